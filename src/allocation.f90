@@ -34,7 +34,7 @@ module allocation
 
 contains
 
-   !> Allocates memory, or ends the process.
+   !> Allocates memory: malloc(3). Ends the process if there is none.
    type(c_ptr) function malloc(length) bind(c) result(place)
       integer(c_size_t), value :: length  !< bytes
 
@@ -42,7 +42,7 @@ contains
       if (.not. c_associated(place)) call end_without_memory
    end function malloc
 
-   !> Allocates memory for elements, all bytes 0, or ends the process.
+   !> Allocates memory for elements, all bytes 0: calloc(3). Ends the process if there is none.
    type(c_ptr) function calloc(count, length) bind(c) result(place)
       integer(c_size_t), value :: count   !< elements
       integer(c_size_t), value :: length  !< bytes of an element
@@ -51,7 +51,7 @@ contains
       if (.not. c_associated(place)) call end_without_memory
    end function calloc
 
-   !> Changes the size of allocated memory, or ends the process.
+   !> Changes the size of allocated memory: realloc(3). Ends the process if there is none.
    type(c_ptr) function realloc(before, length) bind(c) result(place)
       type(c_ptr), value :: before        !< memory that was allocated before, or null
       integer(c_size_t), value :: length  !< bytes; 0 frees the memory

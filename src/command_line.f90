@@ -28,6 +28,7 @@ module command_line
       character(:), allocatable :: text
    end type word_t
 
+   !> The options of the command.
    type :: options_t
       !> '' is standard input; with --ruler the name of a card, or ''; with --explain its words.
       character(:), allocatable :: deck
@@ -41,7 +42,7 @@ module command_line
       logical :: study = .false.             !< speed against error, instead of the listing
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
-      integer :: jobs = 0                    !< processes side by side; 0: one for each processor
+      integer :: jobs = 0                    !< processes at a time; 0: one for each processor
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER', 'EXPLAIN' or ''.
       character(:), allocatable :: show
    end type options_t
@@ -55,8 +56,8 @@ contains
 
    !> Reads the arguments of the process. Errors: status_rejected, for the first fault that is found.
    subroutine read_command(options, failure)
-      type(options_t), intent(out) :: options
-      type(failure_t), allocatable, intent(out) :: failure
+      type(options_t), intent(out) :: options   !< not complete after a failure
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: the arguments are right
       character(:), allocatable :: word
       integer :: i, k
       logical :: has_deck
@@ -144,7 +145,7 @@ contains
 
       !> Takes the name of a file from the word after `word`, its option: `-` is standard output.
       subroutine read_file_name(file)
-         type(word_t), intent(inout) :: file
+         type(word_t), intent(inout) :: file   !< gets the name, '' for standard output
          character(:), allocatable :: path
 
          path = next_word()
@@ -172,8 +173,8 @@ contains
 
    !> Rejects options that exclude each other, or that lack what they need: the first fault that is found.
    subroutine refuse_combinations(options, failure)
-      type(options_t), intent(in) :: options
-      type(failure_t), allocatable, intent(out) :: failure
+      type(options_t), intent(in) :: options   !< as they are read
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: they fit one another
       character(:), allocatable :: names
       logical :: asked(out_last), is_study
       integer :: k
@@ -205,7 +206,7 @@ contains
       end if
    end subroutine refuse_combinations
 
-   !> Gives the value of a word; 0 if it is no whole number, or has too many digits.
+   !> Gives the value of a word; 0 if the word is no whole number, or has too many digits.
    pure integer function whole_of(word) result(number)
       character(*), intent(in) :: word       !< at most `max_option_digits` digits without a sign
 
@@ -216,14 +217,14 @@ contains
 
    !> Tells whether an output is asked for on standard output.
    elemental logical function to_standard_output(file)
-      type(word_t), intent(in) :: file       !< the name of its file
+      type(word_t), intent(in) :: file       !< the name of the output's file; not allocated: not asked for
 
       to_standard_output = .false.
       if (allocated(file%text)) to_standard_output = len(file%text) == 0
    end function to_standard_output
 
-   !> Gives the entries of docs/messages.md that share most letters, in whole words, with what is asked; '' if none
-   !> shares a word.
+   !> Gives the entries of docs/messages.md that share most letters, in whole words, with the words of a question; ''
+   !> if none shares a word. A blank line stands between two entries.
    pure function explained(words) result(text)
       character(*), intent(in) :: words      !< a code, words of a message, or a printed message
       character(:), allocatable :: text
@@ -240,7 +241,7 @@ contains
 
    !> Counts the letters of those words of a key that are words of a message, each word once.
    pure integer function likeness(message, key) result(letters)
-      character(*), intent(in) :: message    !< its words, a blank between two
+      character(*), intent(in) :: message    !< words of the message, a blank between two
       character(*), intent(in) :: key        !< the words that are sought, a blank between two, in capitals
       integer :: first, last, next
 

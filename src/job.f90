@@ -46,8 +46,8 @@ contains
    !> Runs a job: reads the deck, computes its sets and writes the outputs. On an error, status and message are those of
    !> the error. A child process does not return: it ends here.
    subroutine run_job(options, status, message)
-      type(options_t), intent(in) :: options
-      integer, intent(out) :: status         !< exit status
+      type(options_t), intent(in) :: options   !< of the command
+      integer, intent(out) :: status         !< exit status: the largest of all sets, or the status of the error
       character(:), allocatable, intent(out) :: message   !< lines for standard error; '': none
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
@@ -103,7 +103,7 @@ contains
 
    contains
 
-      !> Gives the remarks about `sets`, each line ended by new_line('a'), if no listing has them; '' for --quiet.
+      !> Gives the remarks about `sets`, each line ended by new_line('a'); '' for --quiet.
       function said() result(text)
          character(:), allocatable :: text
          integer :: k
@@ -120,14 +120,14 @@ contains
    end subroutine run_job
 
    !> Checks the options against the sets of the deck. Errors: status_rejected. A deck with VARY cards has no table,
-   !> which has columns for one motion, and no picture of a part of its sets.
+   !> which has columns for one motion, and no picture of a part of its sets. The number of its variants is limited.
    subroutine check_options(options, sets, failure)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: sets(:)
-      type(failure_t), allocatable, intent(out) :: failure
+      type(options_t), intent(in) :: options   !< of the command
+      type(mechanism_t), intent(in) :: sets(:)   !< (sets of the deck)
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: the options fit
 
       if (.not. any(sets%variants > 0)) return
-      ! Their numbers must be whole numbers of the default kind.
+      ! The numbers of variants must be whole numbers of the default kind.
       if (variant_count(sets) > huge(1)) call fail(failure, status_rejected, &
          'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
       if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
@@ -139,15 +139,15 @@ contains
 
    !> Counts the variants of all sets. A set without VARY cards counts as one.
    pure integer(int64) function variant_count(sets)
-      type(mechanism_t), intent(in) :: sets(:)
+      type(mechanism_t), intent(in) :: sets(:)   !< (sets of the deck)
 
       variant_count = sum(int(max(1, sets%variants), int64))
    end function variant_count
 
    !> Finds which sets this command computes by its option --sets. If the deck has VARY cards, it finds which variants.
    subroutine choose_share(sets, writers)
-      type(mechanism_t), intent(in) :: sets(:)
-      type(writers_t), intent(inout) :: writers
+      type(mechanism_t), intent(in) :: sets(:)   !< (sets of the deck)
+      type(writers_t), intent(inout) :: writers   !< with the options; get the share and the sets
 
       writers%varies = any(sets%variants > 0)
       writers%share%kind = trim(merge('VARIANTS', 'SETS    ', writers%varies))
@@ -159,11 +159,11 @@ contains
       writers%last = merge(size(sets), writers%share%last, writers%varies)
    end subroutine choose_share
 
-   !> Gives the number of processes that compute the sets. It is 1 if they take no time, are drawn on one page, or if no
-   !> output can be written.
+   !> Gives the number of processes that compute the sets. The number is 1 if the sets take no time or are drawn on one
+   !> page, or if no output can be written.
    integer function process_count(sets, writers)
-      type(mechanism_t), intent(in) :: sets(:)
-      type(writers_t), intent(in) :: writers
+      type(mechanism_t), intent(in) :: sets(:)   !< (sets of the share)
+      type(writers_t), intent(in) :: writers   !< with the options; open
       real :: work
       integer :: i
 
@@ -177,11 +177,11 @@ contains
    end function process_count
 
    !> Computes and writes the sets of the part at hand, one after another. The texts of all parts in their order are the
-   !> text of the whole.
+   !> text of the whole. After a signal or a failed output no further set is computed.
    subroutine run_sets(sets, structure_report, writers)
-      type(writers_t), intent(inout) :: writers
-      type(mechanism_t), intent(inout) :: sets(writers%first:)
-      type(structure_report_t), intent(inout) :: structure_report(writers%first:)
+      type(writers_t), intent(inout) :: writers   !< open, with the part at hand
+      type(mechanism_t), intent(inout) :: sets(writers%first:)   !< (sets of the share) lose their cards
+      type(structure_report_t), intent(inout) :: structure_report(writers%first:)   !< (sets of the share) are used up
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
@@ -195,7 +195,7 @@ contains
       if (writers%asked(out_dxf)) call begin_dxf(writers%files(out_dxf))
 
       before = writers%first - 1
-      ! Where no set has variants, those before the part at hand need not be passed over.
+      ! If no set has variants, those before the part at hand need not be counted.
       if (.not. writers%varies) before = writers%own_first - 1
       do i = before + 1, writers%last
          if (before >= writers%own_last) exit
@@ -232,13 +232,13 @@ contains
       if (writers%asked(out_dxf)) call end_dxf(writers%files(out_dxf))
    end subroutine run_sets
 
-   !> Draws the film of a set on the pages that are asked for. If a signal comes, nothing is drawn. The film has an
+   !> Draws the motion of a set on the pages that are asked for. If a signal comes, nothing is drawn. The motion has an
    !> analysis of its own: a picture shows links that no table asks for, and printed numbers must not depend on it.
    subroutine draw_set(m, sets, writers, pages)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< the set
       integer, intent(in) :: sets            !< number of sets that are drawn
-      type(writers_t), intent(inout) :: writers
-      type(page_t), intent(inout), target :: pages(out_svg:)
+      type(writers_t), intent(inout) :: writers   !< with the options; get the pages
+      type(page_t), intent(inout), target :: pages(out_svg:)   !< (svg, animation, ...) begun
       type(mechanism_t) :: film
       type(drawing_t), target :: d
       type(set_analysis_t) :: a
@@ -259,11 +259,11 @@ contains
    end subroutine draw_set
 
    !> Exports the motion of a set at the instants of the deck to the file for CAD. If a signal comes, nothing is
-   !> written. The export has an analysis of its own, for the reasons of `draw_set`.
+   !> written. The export has an analysis of its own: it shows links that no table asks for.
    subroutine export_set(m, i, writers)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< the set
       integer, intent(in) :: i               !< the number of the set in the file, from 1
-      type(writers_t), intent(inout) :: writers
+      type(writers_t), intent(inout) :: writers   !< with the file, begun
       type(set_analysis_t) :: a
       type(drawing_t) :: d
       type(point_path_t), allocatable :: paths(:)
@@ -284,11 +284,11 @@ contains
    !> Solves and writes a set, or some of its variants. If the file of its table cannot be opened, the run is broken
    !> off.
    subroutine run_set(m, i, first, last, structure_report, writers)
-      type(mechanism_t), intent(inout) :: m
+      type(mechanism_t), intent(inout) :: m   !< the set; loses its cards
       integer, intent(in) :: i               !< number of the set in the deck
       integer, intent(in) :: first, last     !< the first and the last variant, which may be below 1 or beyond the count
-      type(structure_report_t), intent(inout) :: structure_report
-      type(writers_t), intent(inout) :: writers
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which loses it
+      type(writers_t), intent(inout) :: writers   !< with the options; get the text of the set
       type(failure_t), allocatable :: failure
       type(counts_t) :: counts
       type(set_analysis_t) :: a
@@ -300,7 +300,7 @@ contains
          call find_groups(m, structure_report)
          call listing_head(writers%files(out_listing), m, structure_report)
       end if
-      ! It is as large as the deck, and only the head of the listing has it.
+      ! The echo is as large as the deck, and only the head of the listing has it.
       if (allocated(m%echo)) deallocate (m%echo)
       if (writers%options%check) return
 

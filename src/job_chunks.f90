@@ -52,8 +52,8 @@ contains
    !>
    !> If a process cannot be started or was ended by a signal, the parent has its status and message.
    subroutine run_chunks(outputs, processes, status, message)
-      class(outputs_t), intent(inout) :: outputs
-      integer, intent(in) :: processes       !< number of children
+      class(outputs_t), intent(inout) :: outputs   !< open; in a child it holds its text
+      integer, intent(in) :: processes       !< number of children, above 1
       integer, intent(inout) :: status       !< in the parent: the largest exit status
       character(:), allocatable, intent(inout) :: message   !< in the parent: of an error that no child has printed
       integer :: children(processes), started, k
@@ -118,7 +118,7 @@ contains
    !> Ends the part at hand, if there is one, and begins the next: its sets or variants are outputs%own_first to
    !> outputs%own_last. False if there is no further part or the job is over; then all is written.
    logical function next_part(outputs)
-      class(outputs_t), intent(inout) :: outputs
+      class(outputs_t), intent(inout) :: outputs   !< of this process; get the next part
       integer :: k
 
       associate (s => outputs%share, files => outputs%files(:out_shared))
@@ -165,7 +165,7 @@ contains
 
    !> Writes the text whose turn has come, if there is much. It waits if an output holds too much.
    subroutine write_in_turn(outputs)
-      class(outputs_t), intent(inout) :: outputs
+      class(outputs_t), intent(inout) :: outputs   !< of this process
 
       if (.not. outputs%share%held) return
       if (maxval(held_length(outputs%files(:out_shared))) >= outputs%share%look) call write_in_order(outputs, &
@@ -175,7 +175,7 @@ contains
    !> Writes the parts whose turn has come, and waits for the turn if an output holds too much. If a write fails or the
    !> turn never comes, the shared files have the error, and the held text is dropped.
    subroutine write_in_order(outputs, most)
-      class(outputs_t), intent(inout) :: outputs
+      class(outputs_t), intent(inout) :: outputs   !< of this process
       integer, intent(in) :: most            !< characters that an output may hold without its turn; -1: none
       integer(c_long) :: done
       integer :: part, k
@@ -217,21 +217,21 @@ contains
 
    !> Tells whether the job goes on: the run has not ended before its time, and no write has failed.
    logical function goes_on(outputs)
-      class(outputs_t), intent(in) :: outputs
+      class(outputs_t), intent(in) :: outputs   !< of this process
 
       goes_on = .not. (outputs%ended .or. allocated(outputs%failure) .or. any(outputs%files%error /= 0))
    end function goes_on
 
    !> Counts the parts; 1 if there is nothing to compute.
    pure integer function part_count(share)
-      type(job_chunk_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share   !< of the job
 
       part_count = max(1, (share%last - share%first)/share%length + 1)
    end function part_count
 
    !> Gives the first set or variant of a part; for a part after the last one, the number after the last of all.
    pure integer function first_of(share, part)
-      type(job_chunk_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share   !< of the job
       integer, intent(in) :: part            !< counted from 1
 
       first_of = share%last + 1
@@ -240,7 +240,7 @@ contains
 
    !> Names a part, after a blank: SETS 5 TO 8, or VARIANTS 5 TO 8.
    pure function text_of(share, part) result(text)
-      type(job_chunk_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share   !< of the job
       integer, intent(in) :: part            !< counted from 1
       character(:), allocatable :: text
 

@@ -24,19 +24,21 @@ module kinmat_c
    !> Bytes for each character of a deck: without these it is not read. Decks of `tests/make_deck` take up to 17.
    integer(c_size_t), parameter :: memory_of_character = 20
 
+   !> A set, its analysis and its last row.
    type :: handle_t
-      type(set_analysis_t) :: set
-      type(table_t) :: table
+      type(set_analysis_t) :: set                   !< at the time of the last call
+      type(table_t) :: table                        !< the columns
       type(finished_row_t), allocatable :: rows(:)  !< (requests) of the last instant
-      real(wp), allocatable :: values(:)            !< (columns)
+      real(wp), allocatable :: values(:)            !< (columns) of the last call; in the deck's units
       character(column_name_length), allocatable :: names(:)   !< (columns) with a null after each
-      character(:), allocatable :: message          !< why it is rejected, or ''; with a null after it
+      character(:), allocatable :: message          !< why the set is rejected, or ''; with a null after it
       logical :: is_ready = .false.                 !< the set can be solved
-      real(wp) :: last = -huge(1.0_wp)              !< time of the call before
-      integer :: calls = 0                          !< calls so far, if
-      logical :: as_in_deck = .true.                !< all were for the instants of the deck, in their order
+      real(wp) :: last = -huge(1.0_wp)              !< time of the last call that was accepted, in the deck's unit
+      integer :: calls = 0                          !< that were accepted
+      logical :: as_in_deck = .true.                !< all these calls were for the instants of the deck in their order
    end type handle_t
 
+   !> Texts of C: with a null after them.
    character(kind=c_char), target :: version(len(program_name) + 1) = transfer(program_name//c_null_char, c_null_char, &
       len(program_name) + 1)
    character(kind=c_char), target :: no_memory(18) = transfer('NOT ENOUGH MEMORY'//c_null_char, c_null_char, 18)
@@ -47,7 +49,7 @@ module kinmat_c
       !> Counts the characters of a text of C: strlen(3).
       pure integer(c_size_t) function strlen(text) bind(c)
          import :: c_ptr, c_size_t
-         type(c_ptr), value :: text
+         type(c_ptr), value :: text              !< characters with a null after them
       end function strlen
       !> Locks a mutex, and waits until it is free: pthread_mutex_lock(3). Gives 0.
       integer(c_int) function pthread_mutex_lock(mutex) bind(c)
@@ -65,10 +67,10 @@ contains
       kinmat_version = c_loc(version)
    end function kinmat_version
 
-   !> Reads set number `number` of a deck. Gives its handle, also if it is rejected; null without memory for one.
+   !> Reads set number `number` of a deck. Gives its handle, even if the deck is rejected; null if there is no memory.
    type(c_ptr) function kinmat_read(deck, number, status) bind(c) result(handle)
-      type(c_ptr), value :: deck             !< its text, with a null after it
-      integer(c_int), value :: number        !< from 1
+      type(c_ptr), value :: deck             !< text of the deck, with a null after it; null: an empty deck
+      integer(c_int), value :: number        !< of the set, from 1
       integer(c_int), intent(out), optional :: status   !< solved: ready; rejected or system: `kinmat_message` says why
       type(handle_t), pointer :: k
       type(failure_t), allocatable :: failure
@@ -97,13 +99,13 @@ contains
       if (present(status) .and. allocated(failure)) status = failure%status
    end function kinmat_read
 
-   !> Makes a handle ready for the first instant of a set. Errors: status_rejected.
+   !> Makes a handle ready for the first instant of a set. Errors: status_rejected, or the status of the deck's failure.
    subroutine read_set(text, number, handle, report, failure)
       character(*), intent(in) :: text       !< the deck
       integer, intent(in) :: number          !< of the set, from 1
-      type(handle_t), intent(inout) :: handle
+      type(handle_t), intent(inout) :: handle   !< a new one; gets set, columns and room for a row
       character(:), allocatable, intent(out) :: report   !< all errors of cards; '' if there are none
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: the handle is ready
       type(mechanism_t), allocatable :: sets(:)
       type(structure_report_t), allocatable :: structure_report(:)
       integer :: i
@@ -127,9 +129,9 @@ contains
       end do
    end subroutine read_set
 
-   !> Gives why the set was rejected, or ''.
+   !> Gives a text that says why the set was rejected, or ''.
    type(c_ptr) function kinmat_message(handle) bind(c)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: there was no memory for one
       type(handle_t), pointer :: k
 
       kinmat_message = c_loc(no_memory)
@@ -138,9 +140,9 @@ contains
       if (allocated(k%message)) kinmat_message = c_loc(k%message)
    end function kinmat_message
 
-   !> Counts the columns: time, drives, what PRINT or COLUMN cards ask for. 0 if the set was rejected.
+   !> Counts the columns: time, drives, numbers that PRINT or COLUMN cards ask for. Gives 0 if the set was rejected.
    integer(c_int) function kinmat_columns(handle) bind(c)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: none
       type(handle_t), pointer :: k
 
       kinmat_columns = 0
@@ -149,10 +151,10 @@ contains
       kinmat_columns = size(k%values)
    end function kinmat_columns
 
-   !> Names a column; null if there is none.
+   !> Gives the name of a column, with a null after it; null if there is no such column.
    type(c_ptr) function kinmat_column(handle, i) bind(c)
-      type(c_ptr), value :: handle
-      integer(c_int), value :: i             !< its number, from 0
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: none
+      integer(c_int), value :: i             !< number of the column, from 0
       type(handle_t), pointer :: k
 
       kinmat_column = c_null_ptr
@@ -162,9 +164,9 @@ contains
       kinmat_column = c_loc(k%names(i + 1))
    end function kinmat_column
 
-   !> Counts the instants of the deck, and gives the first of them.
+   !> Counts the instants of the deck, and gives the first of them. Gives 0 if the set was rejected.
    integer(c_int) function kinmat_instants(handle, room, n) bind(c)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: none
       type(c_ptr), value :: room             !< (n) room for their times, in the deck's unit; null: none
       integer(c_int), value :: n             !< number of times that are given at most
       type(handle_t), pointer :: k
@@ -184,11 +186,11 @@ contains
 
    !> Solves for a time, and gives the exit status of the command for this instant. The time is not before the time of
    !> the previous call, unless all calls are for the instants of the deck in their order. Otherwise, and for a time
-   !> that is not finite, the status is status_rejected and the row NaN.
+   !> that is not finite, the status is status_rejected and the row NaN. Without a set the row stays as it is.
    integer(c_int) function kinmat_advance(handle, t, row) bind(c) result(status)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: none
       real(c_double), value :: t             !< time, in the deck's unit
-      real(c_double), intent(inout) :: row(*)   !< (columns) NaN: it does not exist or has no known digit
+      real(c_double), intent(inout) :: row(*)   !< (columns) NaN: the number does not exist or has no known digit
       type(handle_t), pointer :: k
       real(wp) :: time
       logical :: as_in_deck
@@ -217,7 +219,7 @@ contains
 
    !> Frees a handle; null is none.
    subroutine kinmat_free(handle) bind(c)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle           !< of `kinmat_read`; null: none
       type(handle_t), pointer :: k
 
       if (.not. c_associated(handle)) return
@@ -227,7 +229,7 @@ contains
 
    !> Tells whether a handle has a set that can be solved.
    logical function is_ready(handle)
-      type(c_ptr), intent(in) :: handle
+      type(c_ptr), intent(in) :: handle      !< of `kinmat_read`; null: none
       type(handle_t), pointer :: k
 
       is_ready = c_associated(handle)

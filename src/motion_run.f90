@@ -20,15 +20,15 @@ module motion_run
 
 contains
 
-   !> Solves and prints the motion of a set, instant by instant. If the run is broken off, the last line of the listing
-   !> tells so.
+   !> Solves and prints the motion of a set, instant by instant. If a signal or a failed output breaks off the run, the
+   !> last line of the listing tells so, and the answers are not complete.
    subroutine run_motion(set, structure_report, full, writers, counts, asked)
-      type(set_analysis_t), intent(inout) :: set
-      type(structure_report_t), intent(inout) :: structure_report
-      logical, intent(in) :: full            !< with tables
-      type(writers_t), intent(inout) :: writers
-      class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those
-      type(answers_t), intent(out) :: asked  !< the answers to its cards
+      type(set_analysis_t), intent(inout) :: set   !< `now` is divided; ends at the last instant
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which loses it
+      logical, intent(in) :: full            !< the listing has tables
+      type(writers_t), intent(inout) :: writers   !< get the text of the motion
+      class(counts_t), intent(inout) :: counts   !< of a new run; gets its counts
+      type(answers_t), intent(out) :: asked  !< the answers to the cards of the set
       type(printing_t) :: p
       logical :: due, flags, prints
       integer :: k

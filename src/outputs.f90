@@ -14,29 +14,31 @@ module outputs
    !> The part of a job in several processes that this process computes; `shares` divides the job.
    type :: job_chunk_t
       character(:), allocatable :: kind         !< SETS or VARIANTS
-      integer :: first = 1, last = 0            !< all of them
-      integer :: length = huge(1)               !< so many of them are a part
-      integer :: unit = 1                       !< so many variants are solved together
-      logical :: is_child = .false.
+      integer :: first = 1, last = 0            !< of the whole share: of all parts
+      integer :: length = huge(1)               !< sets or variants of a part
+      integer :: unit = 1                       !< variants that are solved together
+      logical :: is_child = .false.             !< this process is a child
       !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
       !> lock of a part is that of a byte of the first.
       integer(c_int) :: taken = -1, done = -1
-      integer :: part = 0                       !< the one at hand
-      logical :: held = .false.                 !< its text is held
-      integer :: look = 0                       !< it is looked for the turn where an output holds so much
-      integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
-      integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
+      integer :: part = 0                       !< number of the part at hand
+      logical :: held = .false.                 !< the text of the part at hand is held
+      integer :: look = 0                       !< characters that an output holds at the next look for the turn
+      integer, allocatable :: waiting(:)        !< (any number) complete parts whose turn has not come
+      integer, allocatable :: lengths(:, :)     !< (outputs, waiting) characters of these parts in each output
    end type job_chunk_t
 
+
+   !> The outputs of a job, or of a process of it.
    type :: outputs_t
-      logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
+      logical :: asked(out_last) = .false.                  !< the command asks for these: no other is open
       type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the set at hand
       type(failure_t), allocatable :: failure               !< of the last file that could not be opened or written
-      type(job_chunk_t) :: share
-      !> The sets that this process computes now; where the deck has VARY cards, numbers of variants, counted through
-      !> all sets.
+      type(job_chunk_t) :: share                            !< of this process
+      !> The sets that this process computes now; if the deck has VARY cards, numbers of variants, counted through all
+      !> sets.
       integer :: own_first = 1, own_last = 0
-      logical :: ended = .false.                            !< before its time: the listing says so in its last line
+      logical :: ended = .false.                            !< before the end: the last line of the listing says so
    end type outputs_t
 
 contains
@@ -47,11 +49,11 @@ contains
    !> Errors: status_system if a file cannot be opened; status_rejected if two outputs are one file, or if several
    !> tables would follow one another on standard output. After an error no output is open.
    subroutine open_outputs(options, first, last, count, outputs, failure)
-      type(options_t), intent(in) :: options
+      type(options_t), intent(in) :: options   !< of the command
       integer, intent(in) :: first, last     !< numbers of the first and the last set that are computed
       integer, intent(in) :: count           !< sets in the deck
-      class(outputs_t), intent(inout) :: outputs
-      type(failure_t), allocatable, intent(out) :: failure
+      class(outputs_t), intent(inout) :: outputs   !< gets the files
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: all are open
       integer :: k, i
 
       outputs%asked = [(allocated(options%files(k)%text), k=1, out_last)]
@@ -80,12 +82,12 @@ contains
    !>
    !> Errors: status_system if the file cannot be opened; status_rejected if it is the deck or another output.
    subroutine open_table(options, first, last, i, tries, outputs, failure)
-      type(options_t), intent(in) :: options
+      type(options_t), intent(in) :: options   !< of the command
       integer, intent(in) :: first, last     !< numbers of the first and the last set that are computed
       integer, intent(in) :: i               !< number of the set, from `first` to `last`
-      logical, intent(in) :: tries           !< a trial: devices and pipes stay closed, for their readers would leave
-      class(outputs_t), intent(inout) :: outputs
-      type(failure_t), allocatable, intent(out) :: failure
+      logical, intent(in) :: tries           !< a check: devices and pipes stay closed, for their readers would leave
+      class(outputs_t), intent(inout) :: outputs   !< with the shared files; gets the table
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: open, or no table is asked for
       type(identity_t) :: there
       character(:), allocatable :: path
       integer :: dot
@@ -103,7 +105,7 @@ contains
 
    !> Closes several outputs. outputs%failure becomes the failure of the last one that could not be written.
    subroutine close_outputs(outputs, first, last)
-      class(outputs_t), intent(inout) :: outputs
+      class(outputs_t), intent(inout) :: outputs   !< open or not
       integer, intent(in) :: first, last     !< the outputs: out_listing, ..., out_table
       type(failure_t), allocatable :: failure
       integer :: k
@@ -117,7 +119,7 @@ contains
 
    !> Tells whether the rest of the job need not be computed: an output has failed, or a signal has come.
    logical function is_over(outputs)
-      class(outputs_t), intent(in) :: outputs
+      class(outputs_t), intent(in) :: outputs   !< of the job
 
       is_over = signal_received() > 0 .or. allocated(outputs%failure) .or. any(outputs%files%error /= 0)
    end function is_over

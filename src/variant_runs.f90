@@ -32,19 +32,20 @@ module variant_runs
 
 contains
 
-   !> Solves and writes variants of a set.
+   !> Solves and writes variants of a set. After a signal or a failed output no further variant is solved, and the last
+   !> line of the listing tells so.
    subroutine run_variants(set, first, last, variation, writers)
       class(set_t), intent(in) :: set        !< with the numbers of the deck
       integer, intent(in) :: first, last     !< numbers of the first and the last variant, from 1
-      type(variation_t), intent(inout) :: variation
-      type(writers_t), intent(inout) :: writers
+      type(variation_t), intent(inout) :: variation   !< of the set
+      type(writers_t), intent(inout) :: writers   !< open; get the text of the variants
       type(layout_t) :: layout
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
       type(request_t), allocatable :: requests(:)
-      logical :: full, has_more              ! tables; ratios or cylinders
-      integer :: n                           ! n: the first variant that is not written
+      logical :: full, has_more              ! full: the listing has tables; has_more: ratios or cylinders
+      integer :: n                           ! the first variant that is not written
 
       n = first
       requests = requests_of(set)
@@ -108,10 +109,10 @@ contains
          end do
       end subroutine run_together
 
-      !> Makes the variant of a row, solves it and fills the row. If it is rejected, the row has the reason.
+      !> Makes the variant of a row, solves it and fills the row. If the variant is rejected, the row has the reason.
       subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant   !< becomes the variant
-         type(variant_row_t), intent(inout) :: row
+         type(variant_row_t), intent(inout) :: row   !< with its number; gets the results
          type(structure_report_t) :: structure_report
          type(set_analysis_t) :: a
          type(answers_t) :: asked
@@ -131,7 +132,7 @@ contains
 
       !> Writes the row of a variant.
       subroutine write_row(row)
-         type(variant_row_t), intent(in) :: row
+         type(variant_row_t), intent(in) :: row   !< filled
 
          if (writers%asked(out_summary)) call summary_row(writers%files(out_summary), summary, set, row)
          if (writers%asked(out_listing)) call write_variant_row(writers%files(out_listing), layout, summary, set, row)
@@ -142,9 +143,9 @@ contains
 
    !> Makes the variant of a row ready for the lanes. A variant that is rejected is over, and its row has the reason.
    subroutine start(variation, run, row)
-      type(variation_t), intent(inout) :: variation
+      type(variation_t), intent(inout) :: variation   !< of the set
       type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
-      type(variant_row_t), intent(inout) :: row
+      type(variant_row_t), intent(inout) :: row   !< with its number; gets the reason if the variant is rejected
       type(structure_report_t) :: structure_report
       logical :: is_done
 
@@ -164,9 +165,9 @@ contains
 
    !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
    subroutine check_variant(variant, structure_report, row)
-      type(mechanism_t), intent(in) :: variant
-      type(structure_report_t), intent(out) :: structure_report
-      type(variant_row_t), intent(inout) :: row
+      type(mechanism_t), intent(in) :: variant   !< of the set
+      type(structure_report_t), intent(out) :: structure_report   !< of the variant
+      type(variant_row_t), intent(inout) :: row   !< of the variant
       character(:), allocatable :: faults
 
       structure_report = find_structure(variant)
@@ -178,7 +179,7 @@ contains
    pure logical function are_together(settings, not_have, outputs)
       class(settings_t), intent(in) :: settings   !< of the set
       logical, intent(in) :: not_have        !< the set has tables, ratios or cylinders, which lanes do not have
-      class(outputs_t), intent(in) :: outputs
+      class(outputs_t), intent(in) :: outputs   !< of the job
 
       are_together = settings%variants > 0 .and. &
          .not. (not_have .or. settings%proves .or. settings%closing > 0.0_wp .or. &

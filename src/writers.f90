@@ -32,22 +32,22 @@ module writers
 
    !> The job's outputs, and what they keep from set to set.
    type, extends(outputs_t) :: writers_t
-      type(options_t) :: options
+      type(options_t) :: options                    !< of the command
       integer :: status = status_solved             !< the exit status of what was computed
       integer :: first = 1, last = 0                !< the sets that were read
-      type(layout_t) :: layout                      !< of the listing of the set at hand
-      type(table_t) :: table                        !< of the set at hand
+      type(layout_t) :: layout                      !< of the listing of the set that is computed
+      type(table_t) :: table                        !< of the set that is computed
       logical :: varies = .false.                   !< the deck has VARY cards
-      type(variation_t), allocatable :: variations(:)   !< of all sets of the deck; empty without VARY cards
+      type(variation_t), allocatable :: variations(:)   !< (sets of the deck) empty without VARY cards
    end type writers_t
 
    !> What is printed of a motion, and what the outputs keep from instant to instant.
    type :: printing_t
       logical :: lists = .false.             !< the listing has tables over the instants
       logical :: each = .false.              !< something is printed at every instant
-      type(listing_state_t) :: state
-      type(column_table_t) :: columns
-      integer, allocatable :: every(:)       !< rows are printed at each so many instants
+      type(listing_state_t) :: state         !< what the listing has printed so far
+      type(column_table_t) :: columns        !< of the COLUMN cards
+      integer, allocatable :: every(:)       !< (requests with rows) rows are printed at each so many instants
       integer :: next = 0, last = 0          !< instants from 0: the next with rows, and the last of all
       type(finished_row_t), allocatable :: rows(:)   !< (requests of the set) of the last instant that was printed
    end type printing_t
@@ -56,10 +56,10 @@ contains
 
    !> Finds which outputs and which instants of the motion of a set are printed.
    subroutine begin_printing(printing, writers, set, full)
-      type(printing_t), intent(out) :: printing
-      type(writers_t), intent(in) :: writers
-      type(set_analysis_t), intent(in) :: set
-      logical, intent(in) :: full            !< its tables are in the listing, too
+      type(printing_t), intent(out) :: printing   !< of the motion
+      type(writers_t), intent(in) :: writers   !< open
+      type(set_analysis_t), intent(in) :: set   !< before its first instant
+      logical, intent(in) :: full            !< the listing has the tables of the set
       type(request_t), allocatable :: requests(:)
 
       printing%lists = full .and. writers%asked(out_listing)
@@ -76,7 +76,7 @@ contains
    !> Tells whether rows are printed at an instant, and finds the next such instant. Reason: a division for each request
    !> at every instant takes longer than all else here.
    logical function is_next(printing, k)
-      type(printing_t), intent(inout) :: printing
+      type(printing_t), intent(inout) :: printing   !< gets the next instant with rows
       integer, intent(in) :: k               !< the instant, counted from 0; one call for each, in their order
 
       is_next = k == printing%next .or. (k == printing%last .and. size(printing%every) > 0)
@@ -87,11 +87,11 @@ contains
    !> only for numbers that are printed. An instant without rows and without remarks has nothing to print, unless
    !> printing%each.
    subroutine print_instant(printing, writers, set, k, due)
-      type(printing_t), intent(inout) :: printing
-      type(writers_t), intent(inout) :: writers
-      type(set_analysis_t), intent(inout) :: set
+      type(printing_t), intent(inout) :: printing   !< gets the rows of the instant
+      type(writers_t), intent(inout) :: writers   !< get the text of the instant
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer, intent(in) :: k               !< the instant, counted from 0
-      logical, intent(in) :: due             !< rows are printed at it
+      logical, intent(in) :: due             !< rows are printed at the instant
       logical :: lists, has_csv
       integer :: i
 
@@ -125,9 +125,9 @@ contains
 
    !> Ends the tables over the instants, after the last one or when the run is broken off.
    subroutine end_tables(printing, writers, set)
-      type(printing_t), intent(inout) :: printing
-      type(writers_t), intent(inout) :: writers
-      type(set_analysis_t), intent(in) :: set
+      type(printing_t), intent(inout) :: printing   !< with the instants so far
+      type(writers_t), intent(inout) :: writers   !< get the ends of the tables
+      type(set_analysis_t), intent(in) :: set   !< after its last instant
 
       if (.not. printing%lists) return
       if (printing%columns%is_only) then
@@ -141,11 +141,11 @@ contains
    !> Prints the end of the listing of a set: the answers to its cards, and how its motion ended, with the counts of its
    !> instants.
    subroutine print_end(printing, writers, set, counts, answers)
-      type(printing_t), intent(in) :: printing
-      type(writers_t), intent(inout) :: writers
-      type(set_analysis_t), intent(in) :: set
-      class(counts_t), intent(in) :: counts
-      type(answers_t), intent(in) :: answers
+      type(printing_t), intent(in) :: printing   !< of the motion
+      type(writers_t), intent(inout) :: writers   !< the listing gets the text
+      type(set_analysis_t), intent(in) :: set   !< after its last instant
+      class(counts_t), intent(in) :: counts   !< of the run
+      type(answers_t), intent(in) :: answers   !< to the cards of the set
       integer :: i
 
       if (.not. printing%lists) return
@@ -165,8 +165,8 @@ contains
    !> Ends the run before its time. The last line of the listing tells after which instant, variant or set; nothing
    !> follows it.
    subroutine break_off(writers, settings, words, number)
-      type(writers_t), intent(inout) :: writers
-      class(settings_t), intent(in) :: settings   !< of the set at hand: the language
+      type(writers_t), intent(inout) :: writers   !< become ended; the listing gets the line
+      class(settings_t), intent(in) :: settings   !< of the set that is computed: the language
       type(phrase_t), intent(in) :: words    !< the sentence before the number
       integer, intent(in) :: number          !< of the last instant, from 0, or of the last variant or set, from 1
 

@@ -26,8 +26,8 @@ module circuits
    !> More than the rounding of an angle, in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie_turns = 1.0e-6_wp
 
-   !> A search ends after so many circuits, or after so much work, points times the cube of the coordinates: its time has
-   !> a bound.
+   !> A search ends after so many circuits, or after so much work, points times the cube of the coordinates: its time
+   !> has a bound.
    integer, parameter :: max_circuits = 64
    real(wp), parameter :: max_work = 3.0e9_wp
 

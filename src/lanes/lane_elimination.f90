@@ -20,7 +20,7 @@ module lane_elimination
 
 contains
 
-   !> Makes the second of two equations idle. It stays so in all iterations.
+   !> Makes the second of two equations idle: its unknown is 0. The equation stays idle in all iterations.
    pure subroutine make_room(values, a, corrections, right_sides)
       real(wp), intent(inout) :: values(lane_count, max_order)        !< of the unknowns (rad, unit of the loop)
       real(wp), intent(inout) :: a(lane_count, max_order**2)          !< the Jacobian (2, 2), by columns

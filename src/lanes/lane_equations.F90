@@ -18,17 +18,17 @@ module lane_equations
 
 contains
 
-   !> Finds cosine and sine of an unknown, if it is an angle.
+   !> Finds cosine and sine of an unknown, if it is an angle; a slide has none.
    pure subroutine set_lane_direction(lanes, i)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with the value of the unknown
       integer, intent(in) :: i               !< the number of the unknown
 
       if (i <= lanes%blocks%orientations) call sines(lanes%u(i)%value, lanes%u(i)%c, lanes%u(i)%s)
    end subroutine set_lane_direction
 
-   !> Solves a direct block: the own unknown of a drive.
+   !> Solves an explicit block: the only unknown of the equation of a drive.
    pure subroutine find_lane_direct(lanes, i)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with the values of the drives; get the unknown's
       integer, intent(in) :: i               !< the number of the block
 
       associate (b => lanes%blocks, first_row => lanes%blocks%list(i)%first_row)
@@ -40,9 +40,9 @@ contains
       end associate
    end subroutine find_lane_direct
 
-   !> Finds what earlier blocks give to the loops of a block: place, velocity, acceleration.
+   !> Finds the sums of the vectors that earlier blocks give to the loops of a block: place, velocity, acceleration.
    pure subroutine find_lane_known(lanes, i)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with the motion of earlier blocks
       integer, intent(in) :: i               !< the number of the block
 
       associate (b => lanes%blocks, block => lanes%blocks%list(i))
@@ -53,7 +53,7 @@ contains
 
    !> Assembles the equations of a block: its Jacobian, its residuals and its right-hand sides for the velocities.
    pure subroutine assemble_lanes(lanes, i, n, a, residuals, right_side)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with values and directions of the unknowns
       integer, intent(in) :: i                        !< the number of the block
       integer, intent(in) :: n                        !< its unknowns, as many as its rows
       real(wp), intent(inout) :: a(lane_count, n*n)        !< the Jacobian, by columns
@@ -70,7 +70,7 @@ contains
    !> Finds the right-hand sides for the accelerations of a block from its velocities. The rotated vectors are those of
    !> the last `assemble_lanes`.
    pure subroutine lane_accelerations(lanes, i, n, right_side)
-      type(lanes_t), intent(in) :: lanes
+      type(lanes_t), intent(in) :: lanes     !< with the rates of the unknowns
       integer, intent(in) :: i                        !< the number of the block
       integer, intent(in) :: n                        !< its unknowns, as many as its rows
       real(wp), intent(inout) :: right_side(lane_count, n) !< (lanes, rows) rad or unit of the loop, per time squared

@@ -32,16 +32,16 @@ module lane_runs
    !> A step is short if the prediction from three motions is off by less, in rad or the unit of length.
    real(wp), parameter :: fine_prediction = 1.0e-7_wp
 
-   !> A variant, and how far it has come.
+   !> A variant, and how far its run has come.
    type :: lane_run_t
-      type(mechanism_t) :: m
-      type(counts_t) :: counts
-      type(answers_t) :: asked
-      type(set_analysis_t) :: s
+      type(mechanism_t) :: m                !< the variant
+      type(counts_t) :: counts              !< of its instants so far
+      type(answers_t) :: asked              !< the answers to its cards
+      type(set_analysis_t) :: s             !< its analysis, which stays behind while a lane has the run
       integer :: at = -1                    !< the number of the last instant solved
       integer :: last = -1                  !< the number of the last instant of the set
       integer :: retry_after = first_patience  !< instants of the ordinary analysis before a lane is tried again
-      logical :: in_simd_lane = .false.     !< a lane has it
+      logical :: in_simd_lane = .false.     !< a lane has the run
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
 
@@ -49,7 +49,7 @@ contains
 
    !> Makes a run ready for its first instant.
    subroutine begin_run(run)
-      type(lane_run_t), intent(inout) :: run   !< its analysis run%s has the variant run%m
+      type(lane_run_t), intent(inout) :: run   !< run%s is ready for the first instant of the variant run%m
 
       call new_answers(run%s, .false., run%asked)
       run%at = -1
@@ -60,10 +60,11 @@ contains
       run%counts = counts_t()
    end subroutine begin_run
 
-   !> Solves the runs that are not over to their ends, or to a signal.
+   !> Solves the runs that are not over to their ends, or to a signal. Instants that lanes refuse are solved by the
+   !> analysis of the run.
    subroutine run_lanes(runs, lanes)
       type(lane_run_t), intent(inout) :: runs(:)   !< at most as many as there are lanes; run i has lane i
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< made for the first run that they take
       type(step_check_t) :: check
       real(wp), dimension(lane_count) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
@@ -135,11 +136,11 @@ contains
    !> - at the last instant if others, those of AT, follow it,
    !> - with EXTREMES also in long steps and at the last instant, of which they take more.
    subroutine look_at_step(run, lanes, i, check, t)
-      type(lane_run_t), intent(inout) :: run
-      type(lanes_t), intent(inout) :: lanes
+      type(lane_run_t), intent(inout) :: run   !< in its lane
+      type(lanes_t), intent(inout) :: lanes   !< with the step; get the run's motion again if the analysis solves it
       integer, intent(in) :: i               !< the number of the lane
       type(step_check_t), intent(in) :: check   !< of the step
-      real(wp), intent(inout) :: t           !< time of the step's end; then of the run's last instant
+      real(wp), intent(inout) :: t           !< time of the end of the step; then of the run's last instant
       logical :: is_refused, counts
 
       is_refused = check%refused(i) > 0.5_wp
@@ -165,7 +166,7 @@ contains
 
    !> Counts instants of a run that are solved and regular.
    pure subroutine count_instants(run, n)
-      type(lane_run_t), intent(inout) :: run
+      type(lane_run_t), intent(inout) :: run   !< in its lane
       integer, intent(in) :: n               !< how many instants are new, at least 0
 
       run%at = run%at + n
@@ -174,11 +175,11 @@ contains
       run%in_simd_lane = .not. run%is_over
    end subroutine count_instants
 
-   !> Hands a run to a lane as soon as the lane can take it; until then the ordinary analysis solves it. A run that is
-   !> over or has its lane stays as it is.
+   !> Hands a run to a lane as soon as the lane can take it; until then the ordinary analysis solves the instants. A run
+   !> that is over or has its lane stays as it is.
    subroutine hand_to_lane(run, lanes, i)
-      type(lane_run_t), intent(inout) :: run
-      type(lanes_t), intent(inout) :: lanes
+      type(lane_run_t), intent(inout) :: run   !< with its analysis at its last instant
+      type(lanes_t), intent(inout) :: lanes   !< with a lane that is free
       integer, intent(in) :: i               !< the number of the lane
 
       do while (.not. (run%is_over .or. run%in_simd_lane) .and. signal_received() == 0)
@@ -189,11 +190,12 @@ contains
       end do
    end subroutine hand_to_lane
 
-   !> Loads a lane with the motions of a run, if lanes can take them. Lanes take one mechanism by METHOD NEWTON, if its
-   !> last instant has all of its motion.
+   !> Loads a lane with the motions of a run, if lanes can take them. Lanes take one mechanism by METHOD NEWTON whose
+   !> last instant has all of its motion, with three motions at equal steps that need no substeps and no limit that is
+   !> known.
    subroutine load_run(run, lanes, i, is_done)
-      type(lane_run_t), intent(inout) :: run
-      type(lanes_t), intent(inout) :: lanes
+      type(lane_run_t), intent(inout) :: run   !< with its analysis at its last instant
+      type(lanes_t), intent(inout) :: lanes   !< made, if they are not yet
       integer, intent(in) :: i               !< the number of the lane
       logical, intent(out) :: is_done        !< the lane has the motions
       real(wp) :: step, away
@@ -218,7 +220,7 @@ contains
 
    !> Solves the next instants of a run by the ordinary analysis, or fewer at a signal.
    subroutine advance_run(run, last)
-      type(lane_run_t), intent(inout) :: run
+      type(lane_run_t), intent(inout) :: run   !< without a lane
       integer, intent(in) :: last            !< the number of the last instant to be solved, if there is one
       type(finished_row_t) :: no_rows(0)
       integer :: k
@@ -233,11 +235,11 @@ contains
       run%is_over = run%at == run%last
    end subroutine advance_run
 
-   !> Gives the EXTREMES of a run the motion that its lane has found. They do not take it if a number is out of range or
-   !> a digit is in doubt.
+   !> Gives the EXTREMES of a run the motion that its lane has found. They do not take the motion if a number is out of
+   !> range or a digit is in doubt.
    subroutine watch_lane(run, lanes, i, t, is_done)
-      type(lane_run_t), intent(inout) :: run
-      type(lanes_t), intent(in) :: lanes
+      type(lane_run_t), intent(inout) :: run   !< in its lane; its analysis gets the state
+      type(lanes_t), intent(in) :: lanes     !< with the motion
       integer, intent(in) :: i               !< the number of the lane
       real(wp), intent(in) :: t              !< time of the motion
       logical, intent(out) :: is_done        !< the motion is taken
@@ -264,8 +266,8 @@ contains
 
    !> Gives the analysis of a run the motions of its lane, for the next instants or for times between instants.
    subroutine give_back(run, lanes, i)
-      type(lane_run_t), intent(inout) :: run
-      type(lanes_t), intent(in) :: lanes
+      type(lane_run_t), intent(inout) :: run   !< its analysis gets the motions
+      type(lanes_t), intent(in) :: lanes     !< with three motions of the run
       integer, intent(in) :: i               !< the number of the lane
 
       associate (a => run%s%list(1))

@@ -20,20 +20,21 @@ module lane_sines
    !> Added to a real, it makes the last bits those of the nearest whole number; subtracted again, it leaves that
    !> number.
    real(wp), parameter :: whole = 1.5_wp/epsilon(1.0_wp)
-   !> pi/2 in three parts.
+   !> pi/2 in three parts, and 2/pi.
    real(wp), parameter :: parts(3) = [1.57079632673412561417E+00_wp, 6.07710050630396597660E-11_wp, &
       2.02226624879595063154E-21_wp], two_over_pi = 6.36619772367581382433E-01_wp
-   !> Coefficients of sine and cosine.
+   !> Coefficients of the sine: of r**3, r**5, ..., r**13.
    real(wp), parameter :: s(6) = [-1.66666666666666324348E-01_wp, 8.33333333332248946124E-03_wp, &
       -1.98412698298579493134E-04_wp, 2.75573137070700676789E-06_wp, -2.50507602534068634195E-08_wp, &
       1.58969099521155010221E-10_wp]
+   !> Coefficients of the cosine: of r**4, r**6, ..., r**14.
    real(wp), parameter :: c(6) = [4.16666666666666019037E-02_wp, -1.38888888888741095749E-03_wp, &
       2.48015872894767294178E-05_wp, -2.75573143513906633035E-07_wp, 2.08757232129817482790E-09_wp, &
       -1.13596475577881948265E-11_wp]
 
 contains
 
-   !> Finds cosine and sine of angles. Other kinds of reals than double take the run-time library's.
+   !> Finds cosine and sine of angles. Other kinds of reals than double take those of the run-time library.
    pure subroutine sines(angles, cosine_of, sine_of)
       real(wp), intent(in) :: angles(lane_count)      !< rad, at most `max_angle`
       real(wp), intent(out) :: cosine_of(lane_count)  !< of each angle

@@ -22,44 +22,47 @@ module lane_state
    !> Motions that a lane has room for: the last three, for a prediction, and the next.
    integer, parameter :: depth = 4
 
-   !> A block.
+   !> A block in each lane. `lipschitz` bounds the change of its Jacobian over the change of its unknowns. Values count
+   !> as `coarse` at least. `sign_of` is the sign of the determinant at the latest motion.
    type :: lane_block_t
       real(wp), dimension(lane_count) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
-      logical :: has_right_sides = .false.              !< in any lane not all its equations are = 0
+      logical :: has_right_sides = .false.              !< in any lane some of its equations are not = 0
       real(wp), dimension(lane_count, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `jacobian_t`, by slots
    end type lane_block_t
 
    !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own analysis. Numbers of the
    !> kind `wp` in `blocks` do not count.
    type :: lanes_t
-      type(blocks_t) :: blocks
+      type(blocks_t) :: blocks                          !< the structure that all lanes have
+      !> Numbers of the blocks that are solved at every step, and of the unknowns that are iterated.
       integer, allocatable :: moving(:), predicted(:)
       logical :: is_polynomial = .true.                 !< the laws have no terms
       type(drive_path_t) :: path(lane_count)                 !< of the drives; its units are as `unit`
-      real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
-      real(wp), allocatable :: unit(:, :)               !< (lanes, drives) see `drive_path_t`
+      real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives) at t = 0: value, rate, acceleration
+      real(wp), allocatable :: unit(:, :)               !< (lanes, drives) factor of the drives' values in the equations
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp) :: t(lane_count, 0:depth - 1) = 0.0_wp        !< times, by slots
-      real(wp) :: excursion(lane_count) = 0.0_wp             !< of the drives in a step
+      real(wp) :: excursion(lane_count) = 0.0_wp             !< of the drives in a step, characteristic lengths or rad
       integer :: slot(0:depth - 1) = [0, 1, 2, 3]       !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
       !> (lanes, value and rate and acceleration, slots, unknowns) that are remembered
       real(wp), allocatable :: past(:, :, :, :)
-      type(lane_block_t), allocatable :: block(:)
+      type(lane_block_t), allocatable :: block(:)       !< (blocks)
       ! Numbers and state, as in `geometry_t` and `state_t`.
-      type(row_numbers_t), allocatable :: rows(:)
+      type(row_numbers_t), allocatable :: rows(:)       !< (rows)
       type(loop_numbers_t), allocatable :: numbers(:)   !< (loops)
       type(vector_t), allocatable :: d(:), e(:)         !< (body vectors), (slides) in their axes
-      type(vector_t), allocatable :: own(:), guide(:)   !< these, rotated by angles of the block
-      type(loop_state_t), allocatable :: loop(:)
+      type(vector_t), allocatable :: own(:), guide(:)   !< (body vectors), (slides) rotated by angles of the block
+      type(loop_state_t), allocatable :: loop(:)        !< (loops)
    end type lanes_t
 
 contains
 
-   !> Tells whether the lanes can take over from a mechanism. Its blocks have at most `max_order` unknowns, as many as
-   !> equations, and it follows three motions at equal steps.
+   !> Tells whether the lanes can take over from a mechanism: reals are double, its blocks have at most `max_order`
+   !> unknowns, as many as equations, three motions are known, and no card sets a tolerance. The caller checks that the
+   !> steps between the motions are equal.
    pure logical function is_covered(continuation)
-      type(continuation_t), intent(in) :: continuation
+      type(continuation_t), intent(in) :: continuation   !< of the mechanism, at its last instant
       integer :: k
 
       is_covered = digits(1.0_wp) == 53 .and. continuation%blocks%redundant == 0 &
@@ -76,7 +79,7 @@ contains
 
    !> Makes lanes for mechanisms of one structure.
    subroutine make_lanes(lanes, continuation)
-      type(lanes_t), intent(out) :: lanes
+      type(lanes_t), intent(out) :: lanes    !< without a motion
       type(continuation_t), intent(in) :: continuation   !< one of the mechanisms
 
       lanes%blocks = continuation%blocks
@@ -98,10 +101,10 @@ contains
       end associate
    end subroutine make_lanes
 
-   !> Fills a lane with the mechanism and the motions of a variant. What follows from the time step is the caller's. If
-   !> the variant's numbers put other body vectors or slides into the equations, the lane stays as it was.
+   !> Fills a lane with the mechanism and the motions of a variant. The caller sets lanes%excursion, which depends on
+   !> the step. If the variant's numbers put other body vectors or slides into the equations, the lane stays as it was.
    subroutine load_lane(lanes, lane, continuation, is_alike)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< by `make_lanes`
       integer, intent(in) :: lane            !< the number of the lane
       type(continuation_t), intent(in) :: continuation   !< a variant of the mechanism for which the lanes were made
       logical, intent(out) :: is_alike       !< the equations have the lanes' body vectors and slides
@@ -160,11 +163,11 @@ contains
       lanes%block%inverse(lane, lanes%slot(0)) = continuation%history%jacobian%inverse
    end subroutine load_lane
 
-   !> Gives a mechanism the last three motions of a lane, as the ones that it follows.
+   !> Gives a mechanism the last three motions of a lane: they become the history from which the mechanism is followed.
    subroutine unload_lane(lanes, lane, continuation)
-      type(lanes_t), intent(in) :: lanes
+      type(lanes_t), intent(in) :: lanes     !< with three motions of the lane
       integer, intent(in) :: lane            !< the number of the lane
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism; gets the motions
       integer :: k, i, u
 
       do k = 0, 2

@@ -19,21 +19,22 @@ module lane_steps
 
    !> A lane that needs more iterations is refused.
    integer, parameter :: max_lane_iterations = 5
+
    !> The certificate of each lane's step.
    type :: step_check_t
       real(wp) :: refused(lane_count) = 0.0_wp      !< above 0: lanes cannot certify that it continues the motion
-      real(wp) :: correction(lane_count) = 0.0_wp   !< the largest of a predicted value, rad or unit of length
-      real(wp) :: ratio(lane_count) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
-      real(wp) :: amplification(lane_count) = 0.0_wp       !< of that ratio per excursion of the drives
+      real(wp) :: correction(lane_count) = 0.0_wp   !< largest correction of a predicted value, rad or unit of length
+      real(wp) :: ratio(lane_count) = 0.0_wp        !< Kantorovich's ratio, without the excursions of the drives
+      real(wp) :: amplification(lane_count) = 0.0_wp   !< of the ratio per excursion of the drives
    end type step_check_t
 
 contains
 
    !> Solves all lanes at new times. A lane whose motion is not certified is refused.
    subroutine solve_lanes(lanes, t, check)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with three motions each; get the motions at `t`
       real(wp), intent(in) :: t(lane_count)       !< times, each a step after the latest motion of its lane
-      type(step_check_t), intent(out) :: check
+      type(step_check_t), intent(out) :: check   !< of the step
       integer :: k, i
 
       call set_drives(lanes, t)
@@ -53,8 +54,8 @@ contains
 
    !> Finds value, rate and acceleration of the drives.
    subroutine set_drives(lanes, t)
-      type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(lane_count)       !< times
+      type(lanes_t), intent(inout) :: lanes   !< get the values at `t`
+      real(wp), intent(in) :: t(lane_count)       !< a time of each lane
       integer :: i, lane
 
       do i = 1, size(lanes%unit, 2)
@@ -74,9 +75,9 @@ contains
 
    !> Predicts all unknowns that are iterated, from the last three motions, with the weights of `predictor`.
    subroutine predict_lanes(lanes, t, check)
-      type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(lane_count)       !< times
-      type(step_check_t), intent(inout) :: check
+      type(lanes_t), intent(inout) :: lanes   !< get values and directions at `t`
+      real(wp), intent(in) :: t(lane_count)       !< a time of each lane
+      type(step_check_t), intent(inout) :: check   !< gets lanes that are refused
       real(wp) :: step(lane_count)
       integer :: k, u
 
@@ -110,12 +111,13 @@ contains
       end do
    end subroutine predict_one
 
-   !> Solves a block: position, velocities, accelerations.
+   !> Solves a block in all lanes: position, velocities, accelerations. The sources are equations.inc and, of the
+   !> elimination, `lane_elimination`.
    subroutine solve_block(lanes, i, n, check)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with predicted values; get the motion of the block
       integer, intent(in) :: i               !< the number of the block
-      integer, intent(in) :: n               !< its unknowns
-      type(step_check_t), intent(inout) :: check
+      integer, intent(in) :: n               !< the number of its unknowns
+      type(step_check_t), intent(inout) :: check   !< gets the certificate of the block
       ! Of fixed size: arrays that are made for each block take longer than its elimination.
       real(wp) :: a(lane_count, max_order**2), d(lane_count, max_order), v(lane_count, max_order), &
          exchanged(lane_count), start(lane_count, max_order), change(lane_count)
@@ -144,15 +146,15 @@ contains
    !> Iterates in all lanes by Newton's method. Lanes that are done keep their values: their results do not depend on
    !> how long the others take. A lane that needs too many iterations is refused.
    subroutine iterate(lanes, i, n, start, a, corrections, right_sides, exchanged, check)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with predicted values and directions; get the last ones
       integer, intent(in) :: i                                   !< the number of the block
-      integer, intent(in) :: n                                   !< its unknowns
+      integer, intent(in) :: n                                   !< the number of its unknowns
       real(wp), intent(in) :: start(lane_count, n)                    !< the predicted values, rad or unit of length
       real(wp), intent(inout) :: a(lane_count, max_order**2)          !< the factors of the last Jacobian
       real(wp), intent(inout) :: corrections(lane_count, max_order)   !< the last ones, not applied yet
       real(wp), intent(inout) :: right_sides(lane_count, max_order)   !< the velocities
       real(wp), intent(inout) :: exchanged(lane_count)                !< 1: the two rows were exchanged; otherwise 0
-      type(step_check_t), intent(inout) :: check
+      type(step_check_t), intent(inout) :: check   !< gets lanes that are refused
       real(wp) :: u(lane_count, max_order), going(lane_count)
       integer :: iteration, k
 
@@ -175,13 +177,14 @@ contains
       check%refused = check%refused + going
    end subroutine iterate
 
-   !> Applies the last correction of an unknown and its rate. The direction of an angle turns by the correction.
+   !> Applies the last correction of an unknown and its rate. The direction of an angle turns by the correction: the
+   !> square of the correction is lost in rounding.
    pure subroutine turn(is_angle, correction, rate, start, unknown, change)
       logical, intent(in) :: is_angle            !< the unknown is an angle
       real(wp), intent(in) :: correction(lane_count)  !< to be subtracted, rad or unit of length
       real(wp), intent(in) :: rate(lane_count)        !< rad or unit of length, per unit of time
       real(wp), intent(in) :: start(lane_count)       !< the predicted value, rad or unit of length
-      type(unknown_t), intent(inout) :: unknown
+      type(unknown_t), intent(inout) :: unknown   !< gets value, rate and direction
       real(wp), intent(inout) :: change(lane_count)   !< the largest |correction| of a prediction in the block so far
       real(wp) :: x
       integer :: l
@@ -203,14 +206,14 @@ contains
    !> Refuses a lane if a pivot is too small compared with the largest, or if the determinant has another sign than
    !> before: as `block_solver` and the continuation refuse an instant. Adds the block to what is certified of the step.
    pure subroutine certify_lanes(n, a, exchanged, change, before, next, block, check)
-      integer, intent(in) :: n                          !< unknowns of the block
+      integer, intent(in) :: n                          !< the number of unknowns of the block
       integer, intent(in) :: before                     !< the slot of the latest motion
       integer, intent(in) :: next                       !< the slot of the motion that is judged
       real(wp), intent(in) :: a(lane_count, max_order**2)    !< the factors of its Jacobian
       real(wp), intent(in) :: exchanged(lane_count)          !< 1: the two rows were exchanged; otherwise 0
       real(wp), intent(in) :: change(lane_count)             !< the largest |correction| of a prediction in the block
-      type(lane_block_t), intent(inout) :: block
-      type(step_check_t), intent(inout) :: check
+      type(lane_block_t), intent(inout) :: block   !< gets pivot and inverse of the motion
+      type(step_check_t), intent(inout) :: check   !< gets the certificate of the block
       real(wp) :: largest(lane_count), sign_of(lane_count)
       integer :: l
 
@@ -229,8 +232,8 @@ contains
 
    !> Makes the motions found last the latest of their lanes.
    subroutine accept_lanes(lanes, t)
-      type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(lane_count)       !< their times
+      type(lanes_t), intent(inout) :: lanes   !< with the motions found last
+      real(wp), intent(in) :: t(lane_count)       !< times of these motions
       integer :: k, u
 
       lanes%slot = [lanes%slot(depth - 1), lanes%slot(:depth - 2)]
@@ -243,9 +246,9 @@ contains
       end do
    end subroutine accept_lanes
 
-   !> Puts a lane back to its latest motion, as if this had been found last.
+   !> Puts a lane back to its latest motion, as if the latest motion had been found last.
    subroutine keep_lane(lanes, lane)
-      type(lanes_t), intent(inout) :: lanes
+      type(lanes_t), intent(inout) :: lanes   !< with a latest motion of the lane
       integer, intent(in) :: lane            !< the number of the lane
       integer :: k, u
 

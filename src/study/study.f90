@@ -27,16 +27,16 @@ module study
    private
    public :: run_study, seconds, median
 
-   !> Measurements of a time.
+   !> Measurements of a time, of which the median, the least and the greatest are printed.
    integer, parameter :: repeats = 9
 
-   !> One way to solve a set, and its results.
+   !> One trial: a way to solve a set, and its results.
    type :: trial_t
-      integer :: method = method_newton
+      integer :: method = method_newton          !< method_newton, method_dense or method_matrix
       real(dp) :: tolerance = 0.0_dp             !< 0: the limit of rounding
-      integer :: predictor = own_predictor       !< its order, or the method's own
+      integer :: predictor = own_predictor       !< order of the predictor, or the method's own
       integer :: missed = 0                      !< instants without a whole motion
-      real(dp) :: iterations = 0.0_dp            !< a step, those of substeps included
+      real(dp) :: iterations = 0.0_dp            !< iterations of a step, those of substeps included
       real(dp) :: seconds = 0.0_dp               !< of the whole motion
       real(dp) :: time(repeats) = 0.0_dp         !< of a step without the first instant, microseconds
       !> Of positions, velocities, accelerations, in parts of the largest; below 0: no number was compared.
@@ -48,7 +48,7 @@ module study
       logical :: is_reference = .false.          !< kinmat-quad's table; otherwise the estimates of errors
       integer :: compared = 0                    !< instants
       logical, allocatable :: due(:)             !< (1 + instants) rows are printed there
-      type(table_t) :: table
+      type(table_t) :: table                     !< the columns that are compared
       real(qp), allocatable :: value(:, :)       !< (columns, 0:compared - 1) angles as the deck has them
    end type truth_t
 
@@ -58,13 +58,13 @@ module study
    real(dp), parameter :: max_seconds = 0.01_dp
    !> Steps of a measurement at least, if the motion has so many.
    integer, parameter :: min_steps = 4
-   !> A trial ends early if it misses instants and has taken so many seconds.
+   !> A trial ends early if it misses instants and has taken so many seconds: its time is not printed.
    real(dp), parameter :: max_seconds_missed = 2.0_dp
    !> A study solves this number of links at instants in each trial.
    integer, parameter :: max_solved = 1000000
    !> A study compares this number of numbers.
    integer, parameter :: max_compared = 1000000
-   !> Methods that solve all equations at once are tried up to this number of equations.
+   !> Methods that solve all equations at once are tried up to this number of equations: their time grows with its cube.
    integer, parameter :: max_equations = 130
    !> The tolerances that are tried; 0: the limit of rounding.
    real(dp), parameter :: tolerances(*) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, 1.0e-12_dp, 0.0_dp]
@@ -124,7 +124,7 @@ contains
    contains
 
       !> Prints iterations and time of a step of a set, as the deck has it. If a position is not found, the status
-      !> becomes status_flagged.
+      !> becomes status_flagged, and no time is printed.
       subroutine write_times(m)
          type(mechanism_t), intent(in) :: m
          type(trial_t) :: t
@@ -148,13 +148,13 @@ contains
       end subroutine write_times
    end subroutine run_study
 
-   !> Prints the study of a set.
+   !> Prints the study of a set: a row for each trial. A set of one instant gets a line that says so.
    subroutine study_set(o, path, m, sets, redundant)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: path       !< the file of the deck
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets            !< how many sets the deck has
-      logical, intent(in) :: redundant       !< it has too many equations
+      logical, intent(in) :: redundant       !< the set has redundant equations
       integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
       type(trial_t), allocatable :: trials(:)
       type(mechanism_t), allocatable :: tried(:)
@@ -219,10 +219,10 @@ contains
       end do
    end subroutine study_set
 
-   !> Prints the row of a trial.
+   !> Prints the row of a trial: times and iterations, or how many instants are missed; errors, or UNKNOWN.
    subroutine write_trial(o, trial, unit)
       type(output_t), intent(inout) :: o
-      type(trial_t), intent(in) :: trial
+      type(trial_t), intent(in) :: trial     !< solved and measured
       real(dp), intent(in) :: unit           !< microseconds of a step by default; 0: the default misses a position
       character(120) :: line
       integer :: d
@@ -250,13 +250,13 @@ contains
       call put(o, trim(line))
    end subroutine write_trial
 
-   !> Solves a set by one trial, and finds its missed instants, iterations and seconds, and its errors if something is
-   !> compared.
+   !> Solves a set by one trial, and finds its missed instants, iterations and seconds. If the truth has numbers, the
+   !> errors of the trial are found as well.
    subroutine solve(m, last, trial, truth)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: last            !< the number of the last instant, counted from 0
-      type(trial_t), intent(inout) :: trial
-      type(truth_t), intent(in) :: truth
+      type(trial_t), intent(inout) :: trial   !< gets the results
+      type(truth_t), intent(in) :: truth     !< of the set; a new one compares nothing
       type(set_analysis_t) :: a
       real(dp) :: begun, largest(last_dimension, 0:2), difference(last_dimension, 0:2)
       integer :: k, i, at_first
@@ -285,8 +285,8 @@ contains
 
    contains
 
-      !> Notes the largest values of the rows of this instant and their largest differences from the truth, of each
-      !> dimension.
+      !> Records, of each dimension, the largest values of the rows of instant `k` and their largest differences from
+      !> the truth.
       subroutine compare()
          type(finished_row_t), allocatable :: rows(:)
          real(qp) :: off
@@ -314,14 +314,14 @@ contains
       end subroutine compare
    end subroutine solve
 
-   !> Reads the table of kinmat-quad for the rows of links, points and pairs of a set, as far as it goes. Without such a
-   !> table the program's own estimates of errors stand for it.
+   !> Reads the table of kinmat-quad for the rows of links, points and pairs of a set, as far as the table goes. Without
+   !> such a table the program's own estimates of errors stand for the truth.
    subroutine read_truth(m, last, path, sets, truth)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: last            !< the number of the last instant, counted from 0
       integer, intent(in) :: sets            !< how many sets the deck has
       character(*), intent(in) :: path       !< the file of the deck
-      type(truth_t), intent(out) :: truth
+      type(truth_t), intent(out) :: truth    !< gets columns, instants and, of a table, values
       type(structure_report_t) :: structure_report
       type(set_motion_t) :: s
       type(request_t), allocatable :: requests(:)
@@ -382,7 +382,7 @@ contains
       seconds = real(ticks, dp)/real(per_second, dp)
    end function seconds
 
-   !> Gives the median of a sample.
+   !> Gives the median of a sample; of an even number of values the mean of both in the middle.
    pure real(dp) function median(values)
       real(dp), intent(in) :: values(:)      !< (1 or more) in any order
       integer :: twice(size(values)), i               ! twice the number of values that are no larger
@@ -396,7 +396,7 @@ contains
    subroutine open_reference(path, set, unit)
       character(*), intent(in) :: path       !< the file of the deck
       character(*), intent(in) :: set        !< K/N: set K of N sets
-      integer, intent(out) :: unit           !< that of the table; 0: there is none
+      integer, intent(out) :: unit           !< unit of the table, which the caller closes; 0: there is none
       character(:), allocatable :: rows
       character(4096) :: this
       integer(c_int) :: descriptor
