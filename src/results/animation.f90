@@ -31,10 +31,10 @@ module animation
 
 contains
 
-   !> Draws the animation of a set at the end of a page; nothing if its film has no frames.
+   !> Draws the animation of a set at the end of a page; nothing if the set has no frames of TIME.
    subroutine draw_animation(page, drawing)
-      type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: drawing   !< the film of the set
+      type(page_t), intent(inout), target :: page   !< gets the animation
+      type(drawing_t), intent(in), target :: drawing   !< all frames of the set
       type(canvas_t) :: canvas
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
@@ -70,7 +70,8 @@ contains
 
    contains
 
-      !> Finds how the frames follow one another. The motion is not shown backwards: drives do not run so.
+      !> Finds the frames that are shown, at equal steps, and whether places between them are interpolated: no link
+      !> turns too far. The motion is not shown backwards: drives do not run so.
       subroutine find_course()
          integer :: k, stride
 
@@ -135,9 +136,9 @@ contains
       end subroutine draw_moving_links
    end subroutine draw_animation
 
-   !> Draws the ring of each instant centre, which is hidden at frames at which the centre is at infinity.
+   !> Draws the ring of each instant centre, which is hidden at frames at which the centre is at infinity or not known.
    subroutine draw_centres(canvas, frame)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
       real(wp) :: place(2, size(frame))
       logical :: has(size(frame))
@@ -163,7 +164,7 @@ contains
    !> Writes the names of points and links at their best places in the first frame. Each name keeps its distance from
    !> its point or link.
    subroutine draw_names(canvas, list, frame, smooth)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< of the set; shows the first frame afterwards
       type(element_t), intent(in) :: list(:)   !< (any number) all shapes
       integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
       logical, intent(in) :: smooth          !< places between keys are interpolated
@@ -202,7 +203,7 @@ contains
 
    !> Writes the time, in red with the reason if the instant is flagged: a column of lines in a window of one line.
    subroutine draw_clock(canvas, frame)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
       real(wp) :: up(2, size(frame))
       character(:), allocatable :: words
@@ -226,11 +227,11 @@ contains
       call close_group(canvas%output, 'svg')
    end subroutine draw_clock
 
-   !> Writes an animated attribute; nothing if it has one value only.
+   !> Writes an animated attribute of the group that is open; nothing if the attribute has one value only.
    subroutine draw_moving(canvas, element, values, smooth)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       character(*), intent(in) :: element    !< of SVG, with the name of the attribute
-      real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute, in turn: pixels, degrees or opacity
+      real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute at each key: pixels, degrees or opacity
       logical, intent(in) :: smooth          !< values between keys are interpolated
 
       if (size(values, 2) < 2) return

@@ -31,11 +31,11 @@ module assembly_table
 
 contains
 
-   !> Writes the lines of the assemblies of a set.
+   !> Writes the lines of the assemblies of a set, mechanism after mechanism.
    subroutine write_assemblies(o, l, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< with its assemblies
       integer :: c, k
 
       call put(o, '')
@@ -58,12 +58,12 @@ contains
       end do
    end subroutine write_assemblies
 
-   !> Writes the line of a block, with its paths and its diagnostics.
+   !> Writes the line of a block, with its paths and its diagnostics. A block of hidden links alone has no names.
    subroutine write_block(o, m, k, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k               !< number of the block among those that iterate
-      type(assembly_block_t), intent(in) :: one
+      integer, intent(in) :: k               !< number of the block among those that are iterated
+      type(assembly_block_t), intent(in) :: one   !< the block
       character(:), allocatable :: links, text
       integer, allocatable :: shown(:)
 
@@ -120,7 +120,7 @@ contains
    subroutine write_cards(o, m, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      type(assembly_t), intent(in) :: one
+      type(assembly_t), intent(in) :: one    !< the assembly
       character(label_length) :: names(3)
       character(star_width) :: numbers(3)
       real(wp) :: position(3, size(m%links)), largest
@@ -196,8 +196,8 @@ contains
       end do
    end subroutine write_cards
 
-   !> Writes a card with its name, labels and numbers. If one number leaves no room for a blank, the numbers are on a *
-   !> card.
+   !> Writes a card with its name, labels and numbers. If one number leaves no room for a blank, the numbers are on a
+   !> second card, a * card.
    subroutine write_card(o, name, labels, numbers)
       type(output_t), intent(inout) :: o
       character(8), intent(in) :: name       !< of the card: LINK, ...
@@ -225,8 +225,8 @@ contains
    !> Gives a number in the columns of a * card, at the right, without digits of rounding.
    function number_text(value, largest, digits) result(text)
       real(wp), intent(in) :: value          !< in the unit of the card
-      real(wp), intent(in) :: largest        !< the largest such number, above 0
-      integer, intent(in) :: digits          !< so many has the largest number
+      real(wp), intent(in) :: largest        !< the largest number of this kind on the cards, above 0
+      integer, intent(in) :: digits          !< digits that the largest number has
       character(star_width) :: text
       character(16) :: form
       real(wp) :: unit, rounded

@@ -34,10 +34,10 @@ module canvas
 
    !> A name with its place.
    type :: label_t
-      character(:), allocatable :: name, attributes   !< of its text
-      integer :: link = 0                    !< with which it moves; 0: none
-      real(wp) :: of(2) = 0.0_wp             !< the pixel of the thing that it names
-      real(wp) :: clear = 0.0_wp             !< pixels: it stays so far from all other things
+      character(:), allocatable :: name, attributes   !< its text, and the attributes of the text as SVG
+      integer :: link = 0                    !< the link with which it moves; 0: none
+      real(wp) :: of(2) = 0.0_wp             !< the pixel of the point or link that it names
+      real(wp) :: clear = 0.0_wp             !< pixels: the name stays so far from all other things
       real(wp) :: start(2) = 0.0_wp          !< the pixel at which its foot line begins
       real(wp) :: near(2) = 0.0_wp           !< the pixel of its text that is nearest to `of`
    end type label_t
@@ -83,11 +83,11 @@ contains
    !> The scale has eight binary digits, the height is even and the shift whole: rounding errors of the results do not
    !> move the picture. None of these numbers is near a tie if the mechanism is symmetric or has few digits.
    subroutine make_canvas(page, drawing, snapshot, others, canvas)
-      type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: drawing
+      type(page_t), intent(inout), target :: page   !< gets the canvas
+      type(drawing_t), intent(in), target :: drawing   !< the record of the set
       type(snapshot_t), intent(in) :: snapshot   !< the position that is shown in full
       integer, intent(in) :: others(:)       !< numbers of the frames for whose links there is room, too
-      type(canvas_t), intent(out) :: canvas
+      type(canvas_t), intent(out) :: canvas   !< of the set; nothing is recorded yet
       type(element_t), allocatable :: list(:)
       real(wp) :: low(2), high(2), from(2), to(2)    ! the extent; and the limits for centrodes
       real(wp) :: room
@@ -167,8 +167,8 @@ contains
 
    !> Gives the places (2, places) of a shape at a position; none if its link has no position there.
    pure function places_of(shape, snapshot) result(p)
-      type(element_t), intent(in) :: shape
-      type(snapshot_t), intent(in) :: snapshot
+      type(element_t), intent(in) :: shape   !< of a set
+      type(snapshot_t), intent(in) :: snapshot   !< the position
       real(wp), allocatable :: p(:, :)
 
       p = shape%places
@@ -179,7 +179,7 @@ contains
 
    !> Gives the pixel (2) of a place.
    pure function to_pixels(canvas, p) result(pixel)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       real(wp), intent(in) :: p(2)           !< lengths, from the drawing's origin
       real(wp) :: pixel(2)
 
@@ -188,9 +188,9 @@ contains
 
    !> Gives the pixels (2, places) of a shape at a position; none if its link is not known there.
    pure function pixels_of(canvas, shape, snapshot) result(pixels)
-      type(canvas_t), intent(in) :: canvas
-      type(element_t), intent(in) :: shape
-      type(snapshot_t), intent(in) :: snapshot
+      type(canvas_t), intent(in) :: canvas   !< of the set
+      type(element_t), intent(in) :: shape   !< of a set
+      type(snapshot_t), intent(in) :: snapshot   !< the position
       real(wp), allocatable :: pixels(:, :)
       real(wp) :: e(2)
       integer :: k
@@ -205,8 +205,8 @@ contains
 
    !> Draws a shape at the position that the canvas shows, unless its link is not known there.
    subroutine draw_shape(canvas, shape)
-      type(canvas_t), intent(inout) :: canvas
-      type(element_t), intent(in) :: shape
+      type(canvas_t), intent(inout) :: canvas   !< of the set
+      type(element_t), intent(in) :: shape   !< the shape
       real(wp), allocatable :: pixels(:, :)
 
       pixels = pixels_of(canvas, shape, canvas%snapshot)
@@ -221,10 +221,10 @@ contains
       end select
    end subroutine draw_shape
 
-   !> Records a shape at the position that the canvas shows, so that names keep clear of it.
+   !> Records a shape at the position that the canvas shows, so that names keep clear of the shape.
    subroutine record_shape(canvas, shape)
-      type(canvas_t), intent(inout) :: canvas
-      type(element_t), intent(in) :: shape
+      type(canvas_t), intent(inout) :: canvas   !< gets the shape
+      type(element_t), intent(in) :: shape   !< the shape
       real(wp), allocatable :: pixels(:, :)
 
       pixels = pixels_of(canvas, shape, canvas%snapshot)
@@ -237,11 +237,11 @@ contains
       end if
    end subroutine record_shape
 
-   !> Draws the outlines of moving shapes as thin lines at a faint position.
+   !> Draws the outlines of moving shapes as thin lines at another position than the one in full.
    subroutine draw_outlines(canvas, list, snapshot)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< of the set
       type(element_t), intent(in) :: list(:)   !< all shapes; only the moving ones are drawn
-      type(snapshot_t), intent(in) :: snapshot
+      type(snapshot_t), intent(in) :: snapshot   !< the position
       real(wp), allocatable :: pixels(:, :)
       integer :: i
 
@@ -252,9 +252,9 @@ contains
       end do
    end subroutine draw_outlines
 
-   !> Gives a time in words, with the values of the drives, as far as there is room.
+   !> Gives a time in words, with the values of the drives, as many as `max_caption` letters have room for.
    function caption(canvas, t) result(words)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       real(wp), intent(in) :: t              !< the time, in the deck's unit
       character(:), allocatable :: words, next
       real(wp) :: f(0:2)
@@ -280,7 +280,7 @@ contains
    !> Ends the picture. Below it are the time of the first flagged instant, why it is flagged, and how many are. The
    !> scale bar is at the foot on the right.
    subroutine draw_foot(canvas)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the set
       character(:), allocatable :: words
 
       if (canvas%drawing%flagged > 0) then
@@ -295,12 +295,12 @@ contains
       call close_group(canvas%output, 'g')
    end subroutine draw_foot
 
-   !> Draws a scale bar on the right. Its length is 1, 2 or 5 times a power of ten of the unit.
+   !> Draws a scale bar on the right. Its length is 1, 2 or 5 times a power of ten of the unit, at most `max_bar`.
    subroutine draw_bar(canvas, level, scale, unit, attributes)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< of the picture
       real(wp), intent(in) :: level          !< pixels, down from the top of the page
       real(wp), intent(in) :: scale          !< pixels in one unit
-      character(*), intent(in) :: unit       !< its name
+      character(*), intent(in) :: unit       !< the name of the unit
       character(*), intent(in) :: attributes   !< of the line, as SVG
       real(wp) :: length, from, x
 
@@ -319,7 +319,7 @@ contains
 
    !> Records the lines through points, which names should not cross.
    pure subroutine add_lines(canvas, points, weight)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< gets the lines
       real(wp), intent(in) :: points(:, :)   !< (2, points) pixels
       real(wp), intent(in) :: weight         !< the larger, the less a name may cross them
       real(wp) :: length, at(2)
@@ -339,29 +339,29 @@ contains
 
    !> Records a box that names should not cover.
    pure subroutine add_box(canvas, p, corner)
-      type(canvas_t), intent(inout) :: canvas
-      real(wp), intent(in) :: p(2)           !< pixel of its upper left corner
-      real(wp), intent(in) :: corner(2)      !< pixel of its lower right corner
+      type(canvas_t), intent(inout) :: canvas   !< gets the box
+      real(wp), intent(in) :: p(2)           !< pixel of the upper left corner of the box
+      real(wp), intent(in) :: corner(2)      !< pixel of the lower right corner of the box
 
       associate (from => cell_of(canvas, p), to => cell_of(canvas, corner))
          canvas%ink(from(1):to(1), from(2):to(2)) = canvas%ink(from(1):to(1), from(2):to(2)) + name_weight
       end associate
    end subroutine add_box
 
-   !> Finds the column and the row (2) of the cell at a pixel; outside the window those of the nearest cell. Lines often
-   !> lie at whole pixels: their rounding errors do not choose.
+   !> Finds the column and the row (2) of the cell at a pixel; outside the window those of the nearest cell. A pixel on
+   !> the border of two cells belongs to one of them whatever its rounding: lines often lie at whole pixels.
    pure function cell_of(canvas, p) result(k)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< with its cells
       real(wp), intent(in) :: p(2)           !< pixel
       integer :: k(2)
 
       k = 1 + int((min(max(p, canvas%low), canvas%high) - canvas%low + tie)/cell_side)
    end function cell_of
 
-   !> Finds the place of a name at which it covers the least of all that is drawn, or comes too near to it. The places
-   !> are on eight sides at several distances. The name is recorded as drawn.
+   !> Finds the place of a name at which the name covers least of all that is drawn. The places are on eight sides at
+   !> several distances. The name is recorded as drawn.
    subroutine place_name(canvas, p, clear, name, label)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< with all lines and names so far; gets the name
       real(wp), intent(in) :: p(:, :)        !< (2, places) pixels: the name stands near one of these
       real(wp), intent(in) :: clear          !< pixels: the name should stay so far from other things
       character(*), intent(in) :: name       !< without blanks at its end
@@ -401,10 +401,10 @@ contains
       end associate
    end subroutine place_name
 
-   !> Writes the name of a label, with a thin line to the thing that it names if the name is far from it.
+   !> Writes the name of a label, with a thin line to the point or link if the name is far from it.
    subroutine draw_label(canvas, label)
-      type(canvas_t), intent(in) :: canvas
-      type(label_t), intent(in) :: label
+      type(canvas_t), intent(in) :: canvas   !< of the set
+      type(label_t), intent(in) :: label     !< with its place
 
       if (norm2(label%near - label%of) > label%clear + longest_without_line) &
          call draw_line(canvas%output, 'polyline', reshape([label%of, label%near], [2, 2]), 'class="leader"')
@@ -413,7 +413,7 @@ contains
 
    !> Measures how much of all that is drawn a line would cover or come near, in pixels of lines.
    pure real(wp) function cover_of(canvas, p)
-      type(canvas_t), intent(in) :: canvas
+      type(canvas_t), intent(in) :: canvas   !< with all that is drawn
       real(wp), intent(in) :: p(:, :)        !< (2, places) pixels of the line
       integer :: i
 
@@ -423,10 +423,10 @@ contains
       end do
    end function cover_of
 
-   !> Measures how much of all that is drawn a box covers, in pixels of lines.
+   !> Measures how much of all that is drawn a box covers, in pixels of lines. A box that leaves the window costs more.
    pure real(wp) function cover(canvas, low, high)
-      type(canvas_t), intent(in) :: canvas
-      real(wp), intent(in) :: low(2), high(2)   !< pixels of its upper left and its lower right corner
+      type(canvas_t), intent(in) :: canvas   !< with all that is drawn
+      real(wp), intent(in) :: low(2), high(2)   !< pixels of the upper left and the lower right corner of the box
 
       associate (from => cell_of(canvas, low), to => cell_of(canvas, high))
          cover = sum(canvas%ink(from(1):to(1), from(2):to(2)))

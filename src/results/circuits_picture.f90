@@ -33,8 +33,8 @@ module circuits_picture
    !> A chart of a number over a drive, in pixels and in the units of its axes.
    type :: circuit_plot_t
       type(chart_curve_t), allocatable :: curves(:)   !< (circuits)
-      real(wp) :: low(2) = huge(1.0_wp), high(2) = -huge(1.0_wp)   !< the ends of the axes
-      real(wp) :: turn(2) = 0.0_wp              !< a whole turn, after which an axis ends; 0: it does not
+      real(wp) :: low(2) = huge(1.0_wp), high(2) = -huge(1.0_wp)   !< the ends of the axes, in their units
+      real(wp) :: turn(2) = 0.0_wp              !< a whole turn, after which an axis ends, in its unit; 0: no end
       real(wp) :: corner(2) = 0.0_wp, extent(2) = 0.0_wp   !< pixels of the window: its corner above, and its size
    end type circuit_plot_t
 
@@ -73,7 +73,7 @@ contains
    !> that varies, unless it is driven. Above them are the names of the circuits in their colours, as far as there is
    !> room. Measures and ratios have no charts.
    subroutine draw_circuits(page, m, set, found)
-      type(page_t), intent(inout) :: page
+      type(page_t), intent(inout) :: page    !< gets the diagrams
       type(mechanism_t), intent(in) :: m     !< the set
       type(set_motion_t), intent(in) :: set   !< at its first instant
       type(circuits_t), intent(in) :: found(:)   !< (drives)
@@ -111,8 +111,8 @@ contains
 
    !> Draws the chart of a number along the circuits of a drive, unless it does not vary or is the drive itself.
    subroutine draw_chart(page, set, i, column, found, does_vary)
-      type(page_t), intent(inout) :: page
-      type(set_motion_t), intent(in) :: set
+      type(page_t), intent(inout) :: page    !< gets the chart
+      type(set_motion_t), intent(in) :: set   !< at its first instant
       integer, intent(in) :: i               !< number of the row in the set
       integer, intent(in) :: column          !< of the row, 1 to 3
       type(circuits_t), intent(in) :: found   !< of the drive
@@ -175,11 +175,11 @@ contains
 
    !> Finds the curves of a number over the drive, one for each circuit, and the ranges of their values.
    subroutine find_curves(set, i, column, found, unit, is_angle, chart)
-      type(set_motion_t), intent(in) :: set
+      type(set_motion_t), intent(in) :: set   !< at its first instant
       integer, intent(in) :: i               !< number of the row in the set
       integer, intent(in) :: column          !< of the row, 1 to 3
       type(circuits_t), intent(in) :: found   !< of the drive
-      real(wp), intent(in) :: unit(2)        !< of the drive and of the number, in the deck's units and rad
+      real(wp), intent(in) :: unit(2)        !< units of both axes, drive and number, in the deck's units and rad
       logical, intent(in) :: is_angle        !< the number is an angle
       type(circuit_plot_t), intent(inout) :: chart   !< gets its curves, and their ranges for its axes
       type(row_t) :: row
@@ -209,8 +209,8 @@ contains
 
    !> Draws the ticks and numbers of both axes, below and on the left.
    subroutine draw_ticks(page, chart)
-      type(page_t), intent(inout) :: page
-      type(circuit_plot_t), intent(in) :: chart
+      type(page_t), intent(inout) :: page    !< gets the ticks
+      type(circuit_plot_t), intent(in) :: chart   !< with its axes
       ! From a side to the end of a tick, and to its number.
       real(wp), parameter :: to_tick_end(2, 2) = reshape([0.0_wp, tick_length, -tick_length, 0.0_wp], [2, 2])
       real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick_length + 13.0_wp, &
@@ -236,10 +236,10 @@ contains
    end subroutine draw_ticks
 
    !> Draws each curve as many times, whole turns apart, as it enters the window; then its dead points and change
-   !> points. The last point of a closed circuit is the first.
+   !> points. Equal curves are drawn in dashes of several colours. The last point of a closed circuit is the first.
    subroutine draw_curves(page, chart, found, polish)
-      type(page_t), intent(inout) :: page
-      type(circuit_plot_t), intent(in) :: chart
+      type(page_t), intent(inout) :: page    !< gets the curves
+      type(circuit_plot_t), intent(in) :: chart   !< with its axes and curves
       type(circuits_t), intent(in) :: found   !< of the drive
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: style
@@ -280,7 +280,8 @@ contains
 
    contains
 
-      !> Finds the number of the first curve to which a curve is equal in the window, but for whole turns.
+      !> Finds the number of the first curve to which a curve is equal in the window, but for whole turns: the curve
+      !> itself if there is no other.
       pure integer function first_equal(i)
          integer, intent(in) :: i               !< number of the curve
 
@@ -292,7 +293,7 @@ contains
          end do
       end function first_equal
 
-      !> Tells whether points of one line are on another line, but for whole turns.
+      !> Tells whether points of one line are on another line, but for whole turns and `same_line_distance`.
       pure logical function lies_on(p, line)
          real(wp), intent(in) :: p(:, :)        !< (2, points) pixels of the first line
          real(wp), intent(in) :: line(:, :)     !< (2, points) pixels of the second line

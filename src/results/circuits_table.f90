@@ -17,7 +17,7 @@ module circuits_table
    private
    public :: write_circuits
 
-   !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
+   !> The last characters before the columns of branch, assemblies and the range of the drive.
    integer, parameter :: column_ends(3) = [9, 17, 31]
    !> An end of a branch without a dead point: a slide goes to infinity, the circuit could not be followed, or a
    !> cylinder has the length 0.
@@ -27,10 +27,10 @@ module circuits_table
 
 contains
 
-   !> Writes the circuits of a set at its end.
+   !> Writes the circuits of a set at the end of its listing, drive after drive.
    subroutine write_circuits(o, set, list)
       type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the circuits
       type(circuits_t), intent(in) :: list(:)   !< (drives)
       integer :: n
 
@@ -57,7 +57,7 @@ contains
    !> Writes a row for each branch of the circuits of a drive, then the dead points and the change points.
    subroutine write_branches(o, set, found)
       type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the circuits
       type(circuits_t), intent(in) :: found   !< of the drive
       character(column_ends(3)) :: row
       character(:), allocatable :: text
@@ -104,11 +104,11 @@ contains
       end do
    end subroutine write_branches
 
-   !> Gives the range of the drive on a branch in words.
+   !> Gives the range of the drive on a branch in words, and why it ends without a dead point.
    function range_words(set, found, branch) result(text)
-      class(set_t), intent(in) :: set
-      type(circuits_t), intent(in) :: found
-      type(circuit_branch_t), intent(in) :: branch
+      class(set_t), intent(in) :: set        !< of the circuits
+      type(circuits_t), intent(in) :: found   !< of the drive
+      type(circuit_branch_t), intent(in) :: branch   !< of these circuits
       character(:), allocatable :: text
       logical :: rises
       integer :: side
@@ -132,10 +132,10 @@ contains
       end associate
    end function range_words
 
-   !> Gives a value of the free drive with its unit; 0 if it is rounding.
+   !> Gives a value of the free drive with its unit; 0 if the value is no more than rounding.
    function value_words(set, found, number) result(words)
-      class(set_t), intent(in) :: set
-      type(circuits_t), intent(in) :: found
+      class(set_t), intent(in) :: set        !< of the circuits
+      type(circuits_t), intent(in) :: found   !< of the drive
       real(wp), intent(in) :: number         !< rad or length
       character(:), allocatable :: words
 
@@ -143,10 +143,11 @@ contains
          value_digits)
    end function value_words
 
-   !> Gives the words before the place of a meeting: BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT.
+   !> Gives the words before the value of the drive at a dead point or a change point: BRANCHES 1 AND 2 MEET AT, or
+   !> BRANCH 1 AT.
    function meeting_words(one, many, numbers, polish) result(text)
-      type(phrase_t), intent(in) :: one, many   !< the word for one of those that meet, and for several
-      integer, intent(in) :: numbers(:)      !< (1 or more) of those that meet
+      type(phrase_t), intent(in) :: one, many   !< the word for one branch or circuit, and for several
+      integer, intent(in) :: numbers(:)      !< (1 or more) of the branches or circuits that meet
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
       integer :: n

@@ -26,11 +26,11 @@ module column_table
 
    !> A column: the time, a drive, or a number of a row.
    type :: listed_column_t
-      integer :: drive = 0                   !< its number among those of the layout; 0: none
-      integer :: request = 0                 !< the row, among the requests of the set; 0: none
+      integer :: drive = 0                   !< number of the drive among those of the layout; 0: none
+      integer :: request = 0                 !< number of the row among the requests of the set; 0: none
       type(row_column_t) :: number           !< of the row
-      type(format_t) :: format
-      character(line_length) :: heads(head_lines) = ''
+      type(format_t) :: format               !< of its numbers
+      character(line_length) :: heads(head_lines) = ''   !< '': an empty line
       integer :: width = numeral_length      !< characters
    end type listed_column_t
 
@@ -40,19 +40,19 @@ module column_table
       type(listed_column_t), allocatable :: columns(:)   !< the time first; not allocated: no COLUMN cards
       !> (tables + 1) The first column of each after the time; at last the number of columns and one more.
       integer, allocatable :: starts(:)
-      type(output_t), allocatable :: lines(:)   !< (tables)
-      type(output_t) :: remarks
+      type(output_t), allocatable :: lines(:)   !< (tables) the lines so far
+      type(output_t) :: remarks              !< about the instants so far
       logical :: masked = .false.            !< some digit is a question mark
       logical :: flagged = .false.           !< some instant has a flag
    end type column_table_t
 
 contains
 
-   !> Makes the tables of a set ready for its first instant.
+   !> Makes the tables of a set ready for its first instant. A set without COLUMN cards has none.
    subroutine new_column_table(l, set, table)
       type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: set
-      type(column_table_t), intent(out) :: table
+      class(set_t), intent(in) :: set        !< of the tables
+      type(column_table_t), intent(out) :: table   !< without an instant, and without COLUMN cards empty
       type(request_t), allocatable :: requests(:)
       integer :: i
 
@@ -96,7 +96,7 @@ contains
       !> Makes the column of a COLUMN card: the name of its row over the name of its number.
       subroutine set_number_column(i, column)
          integer, intent(in) :: i            !< number of the card among the COLUMN cards
-         type(listed_column_t), intent(inout) :: column
+         type(listed_column_t), intent(inout) :: column   !< gets its request, number and heads
 
          column%request = set%columns(i)%request
          column%number = columns_of_rows(column_at(row_form(set, column%request), set%columns(i)%at(1), &
@@ -107,10 +107,10 @@ contains
 
       !> Gives a column its heads and the width that they need.
       subroutine write_heads(column, above, below, format, unit)
-         type(listed_column_t), intent(inout) :: column
-         character(*), intent(in) :: above, below   !< its names
-         type(format_t), intent(in) :: format
-         character(*), intent(in) :: unit    !< its name
+         type(listed_column_t), intent(inout) :: column   !< gets heads, format and width
+         character(*), intent(in) :: above, below   !< the upper and the lower name
+         type(format_t), intent(in) :: format   !< of the numbers
+         character(*), intent(in) :: unit    !< name of the unit
 
          column%heads = [character(line_length) :: above, below, '', unit]
          if (format%power /= 0) column%heads(line_of_power) = power_text(format%power)
@@ -119,12 +119,12 @@ contains
       end subroutine write_heads
    end subroutine new_column_table
 
-   !> Takes the rows of an instant: a line for each table.
+   !> Adds the rows of an instant: a line for each table.
    subroutine add_table_line(table, l, motions, rows)
-      type(column_table_t), intent(inout) :: table
+      type(column_table_t), intent(inout) :: table   !< of the set; get the lines
       type(layout_t), intent(in) :: l
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       character(line_length) :: line
       character(numeral_length) :: field, time
       real(wp) :: f(3)
@@ -158,11 +158,11 @@ contains
       end do
    end subroutine add_table_line
 
-   !> Writes the tables, and below them the remarks.
+   !> Writes the tables, and below them the remarks; nothing without COLUMN cards.
    subroutine write_columns(o, table, settings)
       type(output_t), intent(inout) :: o
-      type(column_table_t), intent(inout) :: table   !< gives up its lines
-      class(settings_t), intent(in) :: settings
+      type(column_table_t), intent(inout) :: table   !< of the set; loses its lines
+      class(settings_t), intent(in) :: settings   !< of the set
       character(:), allocatable :: line
       integer :: n, k, i
 

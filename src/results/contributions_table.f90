@@ -28,12 +28,12 @@ module contributions_table
 
 contains
 
-   !> Writes the shares after the last instant of a set.
+   !> Writes the shares of tolerances after the last instant of a set.
    subroutine write_shares(o, l, shares, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(contributions_t), intent(in) :: shares
-      class(set_t), intent(in) :: set
+      type(contributions_t), intent(in) :: shares   !< after the last instant
+      class(set_t), intent(in) :: set        !< of the shares
       type(request_t), allocatable :: requests(:)
       type(tolerance_t), allocatable :: tolerances(:)
       integer :: i, c, d, j, form
@@ -63,15 +63,15 @@ contains
       end do
    end subroutine write_shares
 
-   !> Writes the lines of a quantity, one column of a row; none if it has no sensitivities, or if its root of squares is
-   !> zero in the tables.
+   !> Writes the lines of a quantity, one column of a row; none if the quantity has no sensitivities, or if its root of
+   !> squares is zero in the tables.
    subroutine write_quantity(o, l, set, row, column, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the shares
       integer, intent(in) :: row             !< number of the row in the set
-      type(row_column_t), intent(in) :: column
-      type(contribution_t), intent(in) :: share
+      type(row_column_t), intent(in) :: column   !< of the quantity
+      type(contribution_t), intent(in) :: share   !< of the quantity
       character(:), allocatable :: unit, word
       type(format_t) :: f
       integer :: i

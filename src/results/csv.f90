@@ -50,22 +50,22 @@ module csv
    !> A value that does not exist or has no known digit.
    character(*), parameter :: missing = 'NaN'
 
-   !> A column after those of time and drives.
+   !> A column of the table after those of time and drives.
    type, extends(row_column_t) :: table_column_t
-      integer :: request = 0                        !< its number among those of the set
+      integer :: request = 0                        !< number of the row among the requests of the set
       character(6*label_length) :: name = ''        !< ROCKER.phi, TIP.vx, SLOT.v, MU.by.ANGLE.CRANK
    end type table_column_t
 
-   !> The columns of a set.
+   !> The columns of the table of a set.
    type :: table_t
       character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
-      type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
-      type(drive_t), allocatable :: laws(:)               !< (drives)
+      type(table_column_t), allocatable :: columns(:)     !< (any number) the others, by derivative and request
+      type(drive_t), allocatable :: laws(:)               !< (drives) functions of time
    end type table_t
 
 contains
 
-   !> Writes the names of the columns.
+   !> Writes the heading of the comma-separated values: the names of the columns.
    subroutine csv_head(o, errors, varies)
       type(output_t), intent(inout) :: o
       logical, intent(in) :: errors          !< rows have estimates of errors after their values
@@ -81,10 +81,10 @@ contains
    !> Writes the rows of an instant that are due, with their errors if these are asked for.
    subroutine csv_instant(o, motions, rows, step, varies)
       type(output_t), intent(inout) :: o
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       integer, intent(in) :: step            !< the number of the instant, from 0
-      logical, intent(in) :: varies          !< as in the head
+      logical, intent(in) :: varies          !< as in the heading
       character(:), allocatable :: start
       integer :: i, k
 
@@ -107,10 +107,10 @@ contains
       !> Writes a row, or three for its three axes: kind, name, the values that exist and have a digit, mark; then the
       !> errors of the values that exist, if these are asked for.
       subroutine add_rows(what, row, has_digit, error)
-         character(*), intent(in) :: what    !< it follows the kind: ' WORST', ...; '': nothing
-         class(row_t), intent(in) :: row
+         character(*), intent(in) :: what    !< words that follow the kind: ' WORST', ...; '': none
+         class(row_t), intent(in) :: row     !< the row
          logical, intent(in) :: has_digit(3, 0:2)   !< at least one digit of the number is known
-         real(wp), intent(in) :: error(3, 0:2)   !< the estimated errors of its value
+         real(wp), intent(in) :: error(3, 0:2)   !< the estimated errors of the value, in the deck's units and rad
          integer :: place(3, 0:2)            ! the columns of the nine cells; 0: none
          character(12) :: mark
          integer :: n, j, k, at_k, cell
@@ -165,7 +165,7 @@ contains
       subroutine add_values(place, value, has_digit)
          integer, intent(in) :: place(3, 0:2)   !< of each cell the column whose number it has; 0: empty
          real(wp), intent(in) :: value(3, 0:2)   !< in the deck's units and rad
-         logical, intent(in) :: has_digit(3, 0:2)   !< without a known digit its cell is empty
+         logical, intent(in) :: has_digit(3, 0:2)   !< a cell whose number has no known digit is empty
          character(9*(full_length + 1)) :: cells
          real(wp) :: x
          integer :: k, c, used, length
@@ -192,7 +192,7 @@ contains
    !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
    !> the rows of PRINT. A table of extremes has the sought numbers of the rows with EXTREMES cards.
    function new_table(set, of_extremes) result(t)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< divided
       logical, intent(in) :: of_extremes     !< the table has extremes
       type(table_t) :: t
       type(name_table_t) :: links
@@ -249,7 +249,7 @@ contains
 
    contains
 
-      !> Adds a column.
+      !> Adds a column to the table, with its name.
       subroutine add_column(i, j)
          integer, intent(in) :: i            !< the number of its row among the requests of the set
          integer, intent(in) :: j            !< the column, in `columns_of_rows`
@@ -276,7 +276,7 @@ contains
    !> Names the columns of all drives. If several drive the same coordinate, the second has .2 after its name, and so
    !> on: ANGLE.CRANK, ANGLE.CRANK.2.
    function drive_columns(set) result(columns)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the drives
       character(drive_length), allocatable :: columns(:)
       integer :: i, number
 
@@ -288,7 +288,7 @@ contains
       end do
    end function drive_columns
 
-   !> Puts a dot for each blank inside a name.
+   !> Gives a name with a dot for each blank inside the name.
    pure function dotted(name) result(text)
       character(*), intent(in) :: name       !< as in the listing
       character(len(name)) :: text
@@ -299,7 +299,7 @@ contains
    !> Writes the heading of the table: the names of all columns.
    subroutine table_head(o, table)
       type(output_t), intent(inout) :: o
-      type(table_t), intent(in) :: table
+      type(table_t), intent(in) :: table     !< of the set
       integer :: i
 
       call add(o, 't')
@@ -317,9 +317,9 @@ contains
    !> Writes the row of the table for an instant.
    subroutine table_instant(o, table, motions, rows)
       type(output_t), intent(inout) :: o
-      type(table_t), intent(in) :: table
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
+      type(table_t), intent(in) :: table     !< of the set
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       real(wp) :: values(table_width(table))
       integer :: i
 
@@ -337,10 +337,10 @@ contains
 
    !> Finds the numbers of the row of the table for an instant, in the deck's units.
    subroutine find_table_row(table, motions, rows, values)
-      type(table_t), intent(in) :: table
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
-      real(wp), intent(out) :: values(:)     !< (table_width) NaN: it does not exist or has no known digit
+      type(table_t), intent(in) :: table     !< of the set
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
+      real(wp), intent(out) :: values(:)     !< (table_width) NaN: the number does not exist or has no known digit
       real(wp) :: f(3)
       integer :: i, n
 
@@ -367,16 +367,16 @@ contains
       !> Gives a number in the unit of the deck.
       pure real(wp) function in_units(value, is_angle)
          real(wp), intent(in) :: value       !< in the deck's units and rad
-         logical, intent(in) :: is_angle     !< it is an angle, or its derivative
+         logical, intent(in) :: is_angle     !< the number is an angle, or its derivative
 
          in_units = value
          if (motions%degrees .and. is_angle) in_units = in_degrees(value)
       end function in_units
    end subroutine find_table_row
 
-   !> Counts the columns of the table.
+   !> Counts the columns of the table, the time included.
    pure integer function table_width(table)
-      type(table_t), intent(in) :: table
+      type(table_t), intent(in) :: table     !< of a set
 
       table_width = 1 + size(table%drives) + size(table%columns)
    end function table_width

@@ -51,9 +51,9 @@ module drawing
    type :: snapshot_t
       real(wp) :: t = 0.0_wp                 !< the time, in the deck's unit
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
-      real(wp), allocatable :: rate(:)       !< (links) of phi; 0 if it is not known
-      real(wp), allocatable :: velocity(:, :)   !< (2, links) for arrows; 0 if it is not known
-      logical, allocatable :: known(:)       !< (links)
+      real(wp), allocatable :: rate(:)       !< (links) of phi, rad over the unit of time; 0 if it is not known
+      real(wp), allocatable :: velocity(:, :)   !< (2, links) of the links' origins, for arrows; 0 if it is not known
+      logical, allocatable :: known(:)       !< (links) the link has a position
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
       integer :: mark = flag_none            !< of the first part that is flagged
@@ -62,7 +62,7 @@ module drawing
 
    !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
    type :: guide_t
-      integer :: pair = 0                    !< its number in the mechanism
+      integer :: pair = 0                    !< number of the pair in the mechanism
       integer :: carrier = 0, block = 0      !< the links with the line, and with the block
       integer :: point = 0                   !< the point of the block on the line
       integer :: pivot = 0                   !< the point of the carrier from which the slide is counted
@@ -79,11 +79,11 @@ module drawing
       type(mechanism_t) :: mechanism         !< the film
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       type(outline_t), allocatable :: outlines(:)   !< (links)
-      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
-      integer, allocatable :: poles(:)       !< the requests of poles
-      logical :: has_centrodes = .true.      !< they are drawn
+      integer, allocatable :: curves(:)      !< (any number) the points whose paths PRINT asks for
+      integer, allocatable :: poles(:)       !< (any number) the requests of poles
+      logical :: has_centrodes = .true.      !< centrodes are drawn
       logical :: has_arrows = .false.        !< the velocities of points are drawn
-      type(guide_t), allocatable :: guides(:)
+      type(guide_t), allocatable :: guides(:)   !< (prismatic pairs)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
       integer :: stride = 1                  !< every so many instants of TIME, and the last, are frames
       type(snapshot_t), allocatable :: frame(:)   !< (frames) recorded so far, and room for further ones
@@ -102,7 +102,7 @@ contains
    subroutine film_of(m, sets, film, every)
       type(mechanism_t), intent(in) :: m     !< as the deck has it
       integer, intent(in) :: sets            !< how many sets the page has
-      type(mechanism_t), intent(out) :: film
+      type(mechanism_t), intent(out) :: film   !< the mechanism with the instants of the film
       integer, intent(out) :: every          !< each so many instants of the film's TIME are the deck's; 0: none
       integer :: intervals, i
       real(wp) :: turns
@@ -133,7 +133,7 @@ contains
    !> Makes a drawing of a film without a frame.
    function new_drawing(m, every, has_arrows, has_centrodes) result(d)
       type(mechanism_t), intent(in) :: m     !< the film
-      integer, intent(in) :: every           !< each so many instants of its TIME are the deck's; 0: none
+      integer, intent(in) :: every           !< each so many instants of TIME of the film are the deck's; 0: none
       logical, intent(in) :: has_arrows      !< the velocities of points are drawn
       logical, intent(in) :: has_centrodes   !< the centrodes of poles are drawn
       type(drawing_t) :: d
@@ -188,7 +188,7 @@ contains
 
    !> Tells whether an instant is a frame. The instants of AT are frames only if the deck has no TIME.
    pure logical function is_frame(drawing, k)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< with its stride
       integer, intent(in) :: k               !< the number of the instant, from 0
 
       is_frame = mod(k, drawing%stride) == 0 .or. k == drawing%mechanism%steps
@@ -197,7 +197,7 @@ contains
 
    !> Gives the position at which only the ground links are known: they are where the deck has them.
    pure function snapshot_of_ground(drawing) result(s)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< with its mechanism
       type(snapshot_t) :: s
       integer :: i
 
@@ -213,7 +213,7 @@ contains
 
    !> Records an instant of a motion: its frame, the ranges of guides, and whether it is flagged.
    subroutine record_instant(drawing, motions, k)
-      type(drawing_t), intent(inout) :: drawing
+      type(drawing_t), intent(inout) :: drawing   !< with the instants before; gets the instant
       type(set_motion_t), intent(in) :: motions   !< at the instant
       integer, intent(in) :: k               !< the number of the instant, from 0
       type(snapshot_t) :: now
@@ -257,7 +257,7 @@ contains
 
    contains
 
-      !> Finds the position of all links, with the marks of an instant of the deck.
+      !> Finds the position of all links, and of an instant of the deck why it is flagged.
       subroutine find_snapshot()
          type(row_t) :: row
          integer :: c, i
@@ -291,10 +291,10 @@ contains
       end subroutine find_snapshot
    end subroutine record_instant
 
-   !> Gives the place (2) of a point at a position.
+   !> Gives the place (2) of a point at a position, in the deck's unit from the origin of the drawing.
    pure function point_place(m, snapshot, i) result(p)
       type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: snapshot
+      type(snapshot_t), intent(in) :: snapshot   !< the position
       integer, intent(in) :: i               !< the number of the point
       real(wp) :: p(2)
 
@@ -330,7 +330,8 @@ contains
       end do
    end function moved
 
-   !> Finds the corners of the convex hull of points, counterclockwise, by Jarvis's march; corners in line are left out.
+   !> Finds the corners (2, corners) of the convex hull of points, counterclockwise, by Jarvis's march; corners in line
+   !> are left out. Without points there are none.
    pure function hull(p) result(corners)
       real(wp), intent(in) :: p(:, :)        !< (2, points) lengths
       real(wp), allocatable :: corners(:, :)

@@ -50,9 +50,9 @@ contains
       end do
    end subroutine new_paths
 
-   !> Adds an instant to paths. After the last one `is_closed` is known.
+   !> Adds an instant to paths. After the last instant of the deck `is_closed` is known.
    subroutine extend_paths(paths, motions, k)
-      type(point_path_t), intent(inout) :: paths(:)
+      type(point_path_t), intent(inout) :: paths(:)   !< (any number) of the set, as `new_paths` has made them
       type(set_motion_t), intent(in) :: motions   !< at the instant
       integer, intent(in) :: k               !< number of the instant, from 0
       type(row_t) :: row
@@ -76,7 +76,7 @@ contains
       end associate
    end subroutine extend_paths
 
-   !> Begins a file.
+   !> Begins a file: the section ENTITIES.
    subroutine begin_dxf(o)
       type(output_t), intent(inout) :: o
 
@@ -84,7 +84,7 @@ contains
       call write_pair(o, 2, 'ENTITIES')
    end subroutine begin_dxf
 
-   !> Ends a file.
+   !> Ends a file: its section and itself.
    subroutine end_dxf(o)
       type(output_t), intent(inout) :: o
 
@@ -95,7 +95,7 @@ contains
    !> Writes the entities of a set. Layers of the first set of the file have no number.
    subroutine write_dxf(o, drawing, paths, number)
       type(output_t), intent(inout) :: o
-      type(drawing_t), intent(in) :: drawing   !< its first frame is the first instant
+      type(drawing_t), intent(in) :: drawing   !< of the set; the first frame is the first instant
       type(point_path_t), intent(in) :: paths(:)   !< (any number) of the set
       integer, intent(in) :: number          !< of the set in the file, from 1
       character(:), allocatable :: layer
@@ -135,11 +135,11 @@ contains
       end associate
    end subroutine write_dxf
 
-   !> Writes the pieces of a path on which its places are known.
+   !> Writes the pieces of a path on which its places are known. A piece of one place is not drawn.
    subroutine write_path(o, layer, path, closes)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: layer      !< its name
-      type(point_path_t), intent(in) :: path
+      character(*), intent(in) :: layer      !< name of the layer
+      type(point_path_t), intent(in) :: path   !< of a point
       logical, intent(in) :: closes          !< the path is one closed piece, which has its first place only once
       integer :: first, last, k
 
@@ -171,8 +171,8 @@ contains
    !> Writes a line on the layer of links.
    subroutine write_side(o, layer, p, corner)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: layer      !< the beginning of its name: the number of the set, or ''
-      real(wp), intent(in) :: p(2), corner(2)   !< lengths, its ends
+      character(*), intent(in) :: layer      !< the beginning of the layer's name: the number of the set, or ''
+      real(wp), intent(in) :: p(2), corner(2)   !< ends of the line, lengths
 
       call write_pair(o, 0, 'LINE')
       call write_pair(o, 8, layer//'LINKS')
@@ -180,7 +180,7 @@ contains
       call write_place(o, 1, corner)
    end subroutine write_side
 
-   !> Writes a place of an entity.
+   !> Writes a place of an entity: group codes 10, 20 and 30, or 11, 21 and 31.
    subroutine write_place(o, which, p)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: which           !< 0: the first place of the entity; 1: the second
@@ -191,7 +191,7 @@ contains
       call write_number(o, 30 + which, 0.0_wp)
    end subroutine write_place
 
-   !> Writes a number with its group code.
+   !> Writes a number with its group code, with `significant_digits`.
    subroutine write_number(o, code, value)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: code            !< group code of DXF

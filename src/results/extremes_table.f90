@@ -37,12 +37,12 @@ module extremes_table
 
 contains
 
-   !> Writes the extremes and the dwells of a set.
+   !> Writes the extremes and the dwells of a set after its last instant.
    subroutine write_extremes(o, l, set, extremes, dwells)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: set
-      type(extremes_t), intent(in) :: extremes
+      class(set_t), intent(in) :: set        !< of the extremes
+      type(extremes_t), intent(in) :: extremes   !< after the last instant
       type(dwell_t), intent(in) :: dwells(:)   !< (any number)
       type(listing_state_t) :: table
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
@@ -104,9 +104,9 @@ contains
 
    contains
 
-      !> Writes the rows of a link, point or pair.
+      !> Writes the rows of the link, point, pair, measure or ratio of `own`.
       subroutine write_subject(name)
-         character(*), intent(in) :: name    !< of the link, point or pair
+         character(*), intent(in) :: name    !< of the row
          character(numeral_length), dimension(size(own), 0:2) :: value, time, place
          type(strokes_t) :: strokes(size(own))
          character(:), allocatable :: line
@@ -179,7 +179,7 @@ contains
          end do
       end subroutine write_subject
 
-      !> Writes a line with one or two times and the values of the drive then.
+      !> Writes a line with one or two times and the values of the drive at these times.
       subroutine write_at(head, t, error)
          character(*), intent(in) :: head    !< the beginning of the line
          real(wp), intent(in) :: t(:)        !< (1 or 2) times
@@ -202,7 +202,7 @@ contains
          call put(o, line)
       end subroutine write_at
 
-      !> Writes a line about intervals, if there are any: as many of them as it has room for.
+      !> Writes a line about intervals, as many as the line has room for; nothing if there are none.
       subroutine write_gaps(list, words)
          type(uncovered_interval_t), intent(in) :: list(:)   !< (any number)
          type(phrase_t), intent(in) :: words   !< the beginning of the line
@@ -224,13 +224,13 @@ contains
 
       !> Gives the name of a coordinate.
       pure function name_of(coordinate) result(name)
-         type(coordinate_t), intent(in) :: coordinate
+         type(coordinate_t), intent(in) :: coordinate   !< not of a ratio
          character(:), allocatable :: name
 
          name = column_name(l, columns_of_rows(coordinate%columns(0)))
       end function name_of
 
-      !> Writes a row of the table.
+      !> Writes a row of the table: a field for each number of `own`.
       subroutine write_fields(label, fields)
          character(*), intent(in) :: label   !< the beginning of the row
          character(numeral_length), intent(in) :: fields(:, 0:)   !< (coordinates of the row, 0:2); '': blank
@@ -252,10 +252,10 @@ contains
 
       !> Gives a value of a coordinate with the digits of the table.
       pure function text_of(coordinate, k, value, error) result(text)
-         type(coordinate_t), intent(in) :: coordinate
+         type(coordinate_t), intent(in) :: coordinate   !< of the set
          integer, intent(in) :: k            !< which derivative, 0 to 2
          real(wp), intent(in) :: value       !< in the deck's units and rad
-         real(wp), intent(in) :: error       !< its error
+         real(wp), intent(in) :: error       !< error of the value
          character(:), allocatable :: text
 
          associate (column => columns_of_rows(coordinate%columns(k)))

@@ -21,10 +21,10 @@ module labels
 
 contains
 
-   !> Finds the names of points and links in a picture; none if they are too many.
+   !> Finds the names of points and links in a picture with their places; no names if there are too many.
    subroutine labels_of(canvas, labels)
-      type(canvas_t), intent(inout) :: canvas
-      type(label_t), allocatable, intent(out) :: labels(:)
+      type(canvas_t), intent(inout) :: canvas   !< with all shapes; gets the names
+      type(label_t), allocatable, intent(out) :: labels(:)   !< (any number)
       integer :: used
 
       used = 0
@@ -41,9 +41,9 @@ contains
    !> name is of a point that PRINT asks for, then the shortest, then the first. A point with the name of its link has
    !> none, since the link has it.
    subroutine name_points(canvas, labels, used)
-      type(canvas_t), intent(inout) :: canvas
-      type(label_t), intent(inout) :: labels(:)   !< with room for further ones
-      integer, intent(inout) :: used         !< so many are found
+      type(canvas_t), intent(inout) :: canvas   !< with all shapes; gets the names
+      type(label_t), intent(inout) :: labels(:)   !< (any number) with room for further ones
+      integer, intent(inout) :: used         !< number of labels that are found
       logical, dimension(size(canvas%mechanism%points)) :: open, printed
       real(wp) :: p(2, size(canvas%mechanism%points))
       integer :: i, best
@@ -79,9 +79,9 @@ contains
    !> Finds the names of the moving links, each in its color: near a bar, in or near a polygon. They may stand along the
    !> sides of the link, or at its only place.
    subroutine name_links(canvas, labels, used)
-      type(canvas_t), intent(inout) :: canvas
-      type(label_t), intent(inout) :: labels(:)   !< with room for further ones
-      integer, intent(inout) :: used         !< so many are found
+      type(canvas_t), intent(inout) :: canvas   !< with all shapes; gets the names
+      type(label_t), intent(inout) :: labels(:)   !< (any number) with room for further ones
+      integer, intent(inout) :: used         !< number of labels that are found
       real(wp), allocatable :: corners(:, :), p(:, :)
       integer :: i, j, k, n, places
 
