@@ -52,11 +52,11 @@ module listing
 
 contains
 
-   !> Writes title, data and structure of a set.
+   !> Writes title, data, remarks and structure of a set.
    subroutine listing_head(o, m, structure_report)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: structure_report
+      type(mechanism_t), intent(in) :: m     !< the set, with its cards
+      type(structure_report_t), intent(in) :: structure_report   !< of the set, with its groups
       character(18) :: head
       integer :: i, k
 
@@ -119,8 +119,8 @@ contains
    subroutine listing_instant(o, l, motions, rows, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       integer, intent(in) :: step            !< the number of the instant, from 0
       type(listing_state_t), intent(inout) :: table   !< as the instant before has left it
       type(row_t) :: other
@@ -219,7 +219,7 @@ contains
 
    !> Finds the time of the limit beyond which a motion has no position; huge if there is a position or another reason.
    pure real(wp) function limit_before(q) result(time)
-      type(motion_t), intent(in) :: q
+      type(motion_t), intent(in) :: q        !< at an instant
       integer :: i
 
       time = huge(1.0_wp)
@@ -233,7 +233,7 @@ contains
    subroutine write_waiting(o, polish, table)
       type(output_t), intent(inout) :: o
       logical, intent(in) :: polish          !< in Polish
-      type(listing_state_t), intent(inout) :: table   !< has the instants
+      type(listing_state_t), intent(inout) :: table   !< with the instants that wait; then none waits
       character(:), allocatable :: instants
 
       if (table%first < 0) return
@@ -246,7 +246,7 @@ contains
       table%first = -1
    end subroutine write_waiting
 
-   !> Gives the reason why a motion is not complete in words.
+   !> Gives the reason why a motion is not complete in words: '' for flag_none.
    pure function words_of_flag(flag, singularity, polish) result(words)
       integer, intent(in) :: flag            !< flag_not_converged, ...
       integer, intent(in) :: singularity     !< with flag_singular: singular_change, ...
@@ -260,13 +260,13 @@ contains
    !> Writes the last lines of a set: the closure error of redundant equations, and the error that a closing tolerance
    !> allows; diagnostics; the counts of certificates; the counts of solved and flagged instants.
    subroutine listing_end(o, set, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
-      type(output_t), intent(inout) :: o
+      type(output_t), intent(inout) :: o     !< after its last instant
       class(set_t), intent(in) :: set
       integer, intent(in) :: solved, flagged   !< counts of instants
-      type(certificate_counts_t), intent(in) :: certificate_counts
+      type(certificate_counts_t), intent(in) :: certificate_counts   !< of all instants
       real(wp), intent(in) :: closure_error   !< characteristic lengths; below 0: no equation is redundant
-      real(wp), intent(in) :: allowed_error   !< of instants with a position (characteristic lengths, rad), or 0
-      type(diagnostic_t), intent(in) :: diagnostics(:)   !< (any number)
+      real(wp), intent(in) :: allowed_error   !< largest of instants with a position (characteristic lengths, rad); or 0
+      type(diagnostic_t), intent(in) :: diagnostics(:)   !< (any number) after the last instant
       character(:), allocatable :: end_of
       character(20) :: number
       integer :: i
@@ -298,10 +298,11 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> Gives the text of a remark about a card: CARD 7  COLUMN 9: "TIP" and a sentence.
+   !> Gives the text of a remark about a card: CARD 7  COLUMN 9: "TIP" and a sentence. A count of further remarks has
+   !> neither card nor column.
    function remark_text(m, remark) result(text)
       type(mechanism_t), intent(in) :: m
-      type(remark_t), intent(in) :: remark
+      type(remark_t), intent(in) :: remark   !< about a card of the set
       character(:), allocatable :: text
       logical :: is_one
 
@@ -324,8 +325,8 @@ contains
    !> Writes a line for each diagnostic that no flag explains.
    subroutine write_diagnostics(o, set, list)
       type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: set
-      type(diagnostic_t), intent(in) :: list(:)
+      class(set_t), intent(in) :: set        !< of the diagnostics
+      type(diagnostic_t), intent(in) :: list(:)   !< (any number)
       integer :: i
 
       do i = 1, size(list)
@@ -335,10 +336,10 @@ contains
       end do
    end subroutine write_diagnostics
 
-   !> Gives the links of a limit in words: LINKS A, B AT THE LIMIT, COLLINEAR.
+   !> Gives the links or the cylinder of a limit in words: LINKS A, B AT THE LIMIT, COLLINEAR.
    function at_limit(set, diagnostic) result(text)
-      class(set_t), intent(in) :: set
-      type(diagnostic_t), intent(in) :: diagnostic
+      class(set_t), intent(in) :: set        !< of the diagnostic
+      type(diagnostic_t), intent(in) :: diagnostic   !< with links, or with the pair of a cylinder
       character(:), allocatable :: text
 
       if (diagnostic%pair > 0) then
@@ -350,10 +351,10 @@ contains
       if (diagnostic%in_line) text = text//', '//phrase(text_in_line, set%polish)
    end function at_limit
 
-   !> Gives the sentence of a diagnostic; '' for a kind that has none.
+   !> Gives the sentence of a diagnostic; '' for a kind that flags explain.
    function words_of(set, diagnostic) result(text)
-      class(set_t), intent(in) :: set
-      type(diagnostic_t), intent(in) :: diagnostic
+      class(set_t), intent(in) :: set        !< of the diagnostic
+      type(diagnostic_t), intent(in) :: diagnostic   !< of any kind
       character(:), allocatable :: text
       character(drive_length) :: drives(size(diagnostic%links))
       integer :: k
@@ -424,7 +425,8 @@ contains
 
    contains
 
-      !> Gives the place of a change point: CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER, and a colon.
+      !> Gives the words before what is said of a change point: CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER,
+      !> and a colon.
       function place() result(text)
          character(:), allocatable :: text
 
@@ -432,7 +434,7 @@ contains
             //time(set, diagnostic%t)//', '//links(set, diagnostic)//': '
       end function place
 
-      !> Gives the owner of an equation: PAIR A, or DRIVE ANGLE B.
+      !> Gives the owner of an equation: PAIR A, or DRIVE ANGLE B; '' if the diagnostic has neither.
       function owner() result(text)
          character(:), allocatable :: text
 
@@ -447,7 +449,7 @@ contains
 
    !> Gives the words for a full turn: TURNS FULLY, CLOSES AFTER 1 TURN.
    function full_turn_words(turns, polish) result(text)
-      integer, intent(in) :: turns           !< after so many turns the motion closes
+      integer, intent(in) :: turns           !< turns after which the motion closes
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
 
@@ -456,8 +458,8 @@ contains
 
    !> Gives the links of a diagnostic: LINKS A, B AND 3 MORE.
    function links(set, diagnostic) result(text)
-      class(set_t), intent(in) :: set
-      type(diagnostic_t), intent(in) :: diagnostic
+      class(set_t), intent(in) :: set        !< of the diagnostic
+      type(diagnostic_t), intent(in) :: diagnostic   !< whose links are given
       character(:), allocatable :: text
       character(label_length), allocatable :: names(:)
 
@@ -469,9 +471,9 @@ contains
 
    !> Gives the value of a diagnostic with its unit.
    function measure(settings, diagnostic, digits) result(text)
-      class(settings_t), intent(in) :: settings
-      type(diagnostic_t), intent(in) :: diagnostic
-      integer, intent(in) :: digits          !< significant ones
+      class(settings_t), intent(in) :: settings   !< of the set: the units
+      type(diagnostic_t), intent(in) :: diagnostic   !< whose value is given
+      integer, intent(in) :: digits          !< significant digits
       character(:), allocatable :: text
       !> Numbers between these have no exponent.
       real(wp), parameter :: min_without_exponent = 1.0e-4_wp, max_without_exponent = 1.0e9_wp
@@ -487,8 +489,8 @@ contains
 
    !> Gives a time with the digits of the tables and its unit.
    function time(settings, t) result(text)
-      class(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: t              !< time
+      class(settings_t), intent(in) :: settings   !< of the set: the instants and the unit
+      real(wp), intent(in) :: t              !< time, in the deck's unit
       character(:), allocatable :: text
       type(format_t) :: f
 

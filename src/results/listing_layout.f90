@@ -42,12 +42,12 @@ module listing_layout
       integer :: head_length(table_turning:last_table) = 0
    end type digits_t
 
-   !> A drive at the head of an instant: the text before and after its value, and its form.
+   !> A drive at the head of an instant.
    type :: head_drive_t
-      character(:), allocatable :: before, after
-      type(drive_t) :: law
-      type(format_t) :: format
-      real(wp) :: size_of(0:1) = 0.0_wp    !< size of the terms of its value, (0) + (1) |t|, by `growing_sizes`
+      character(:), allocatable :: before, after   !< the text before and after its value
+      type(drive_t) :: law                 !< function of time
+      type(format_t) :: format             !< of its value
+      real(wp) :: size_of(0:1) = 0.0_wp    !< of the terms of its value, (0) + (1) |t|: their size
    end type head_drive_t
 
    !> The digits of the set, and of each of its independent mechanisms.
@@ -55,16 +55,17 @@ module listing_layout
       type(digits_t), allocatable :: own(:)   !< (parts)
       type(format_t) :: time                  !< of the instants
       integer :: more_decimals = 0         !< of the effect of tolerances, in addition to the decimals of the number
-      logical :: polish = .false.
+      logical :: polish = .false.          !< the listing is in Polish
       integer :: links_table = table_turning   !< the kind of the tables of links
       integer :: shift(size(forms)) = 0    !< places that the columns of a form of rows are further on
-      logical :: has(size(forms)) = .false.   !< there are such rows
+      logical :: has(size(forms)) = .false.   !< the set has rows of this form
       character(label_length) :: unit(last_dimension) = ''   !< of lengths and angles; of the quantity of a ratio
       character(label_length + 4) :: per(last_dimension, 0:2) = ''   !< the divisor of the unit of a derivative
       logical :: per_below = .false.       !< the divisor is in a line below the unit, which is long
       character(numeral_length) :: words(cell_none:last_cell)   !< in the place of a number
-      character(:), allocatable :: before_instant, after_time    !< of the line over the tables: ' INSTANT ', ' S'
-      type(head_drive_t), allocatable :: drives(:)                !< that stand in it
+      !> Of the line over the tables: ' INSTANT ' before the number of the instant, ' S' after its time.
+      character(:), allocatable :: before_instant, after_time
+      type(head_drive_t), allocatable :: drives(:)                !< the drives in that line
       character(:), allocatable :: more_drives                    !< ' AND 3 MORE', or ''
    end type layout_t
 
@@ -155,8 +156,8 @@ contains
    !> Chooses the digits of each part of the set. If the decimals of parts differ by at most one, all have those of
    !> the largest part.
    subroutine choose_own_digits(l, set, requests)
-      type(layout_t), intent(inout) :: l     !< gets `own` and `digits_t`
-      class(set_t), intent(in) :: set
+      type(layout_t), intent(inout) :: l     !< gets `own` and the components of `digits_t`
+      class(set_t), intent(in) :: set        !< divided
       type(request_t), intent(in) :: requests(:)   !< (rows of the set)
       type(format_t) :: largest(of_length:of_angle, 0:2)
       real(wp) :: sizes(2), angle   ! the characteristic length and rate
@@ -202,7 +203,7 @@ contains
 
    !> Names a row: its link, point, pair or measure, of a ratio with its drive: MU BY ANGLE CRANK.
    function row_title(set, i) result(name)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the row
       integer, intent(in) :: i               !< number of the row in the set
       character(:), allocatable :: name
       integer :: drive
@@ -214,17 +215,17 @@ contains
 
    !> Gives the digits of a column of a row.
    pure type(format_t) function column_format(l, set, i, column)
-      type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: set
+      type(layout_t), intent(in) :: l        !< of the set
+      class(set_t), intent(in) :: set        !< of the row
       integer, intent(in) :: i               !< number of the row in the set
-      class(row_column_t), intent(in) :: column
+      class(row_column_t), intent(in) :: column   !< of the row
 
       column_format = l%own(set%rows(i)%part)%format(column%dimension, column%order)
    end function column_format
 
    !> Writes the lines over rows in tables of one kind: names, powers of ten if there are any, units.
    subroutine write_table_heads(l, digits, kind)
-      type(layout_t), intent(in) :: l
+      type(layout_t), intent(in) :: l        !< of the set
       type(digits_t), intent(inout) :: digits     !< of a part: its formats; gets the lines
       integer, intent(in) :: kind            !< of the table: table_turning, request_link, ...
       character(table_row_length) :: lines(4)
@@ -266,9 +267,9 @@ contains
 
    contains
 
-      !> Writes a word to a line.
+      !> Writes a word to a line, over the characters that are there.
       pure subroutine write_word(line, word, last)
-         character(*), intent(inout) :: line   !< which has room for it
+         character(*), intent(inout) :: line   !< with room for the word
          character(*), intent(in) :: word    !< without blanks
          integer, intent(in) :: last         !< the character of the line at which the word ends
 
@@ -278,7 +279,7 @@ contains
 
    !> Finds the last character of a column in a line of the listing.
    pure integer function end_of_column(l, form, j)
-      type(layout_t), intent(in) :: l
+      type(layout_t), intent(in) :: l        !< of the set
       integer, intent(in) :: form            !< of the rows: row_link, ...
       integer, intent(in) :: j               !< the column, in `columns_of_rows`
 
@@ -288,8 +289,8 @@ contains
 
    !> Gives the head of a column.
    pure function column_name(l, column) result(name)
-      type(layout_t), intent(in) :: l
-      type(row_column_t), intent(in) :: column        !< the column
+      type(layout_t), intent(in) :: l        !< of the set
+      type(row_column_t), intent(in) :: column        !< the column of a row
       character(:), allocatable :: name
 
       name = column_word(column%english, column%polish, l%polish)
@@ -297,8 +298,8 @@ contains
 
    !> Gives the unit of a column, without its power of ten.
    pure function column_unit(l, column) result(unit)
-      type(layout_t), intent(in) :: l
-      type(row_column_t), intent(in) :: column        !< the column
+      type(layout_t), intent(in) :: l        !< of the set
+      type(row_column_t), intent(in) :: column        !< the column of a row
       character(:), allocatable :: unit
 
       unit = trim(l%unit(column%dimension))//trim(l%per(column%dimension, column%order))
@@ -315,10 +316,11 @@ contains
    end function column_word
 
    !> Chooses the digits of times: as many as other numbers have, and as many as show two digits of the shortest step,
-   !> or one, if there is room for them. Reason: two instants must not show the same time.
+   !> or one, if there is room for them. If all times are 0, the format is the default. Reason: two instants must not
+   !> show the same time.
    pure subroutine choose_time_digits(settings, format)
-      class(settings_t), intent(in) :: settings     !< its instants
-      type(format_t), intent(out) :: format       !< of its times
+      class(settings_t), intent(in) :: settings     !< of the set: the instants
+      type(format_t), intent(out) :: format       !< of the times of the set
       integer :: before, room, needed
 
       associate (time => latest_time(settings))
@@ -343,7 +345,7 @@ contains
    !> 1. The last element is the number of columns plus one.
    pure function line_starts(before, widths) result(starts)
       integer, intent(in) :: before          !< characters of a line before its other columns
-      integer, intent(in) :: widths(:)       !< (columns) characters; 0: it is not in the table
+      integer, intent(in) :: widths(:)       !< (columns) characters; 0: the column is not in the table
       integer, allocatable :: starts(:)
       integer :: used, i
 
@@ -358,8 +360,8 @@ contains
       starts = [starts, size(widths) + 1]
    end function line_starts
 
-   !> Writes a sentence in one line, or in several if it is long. A line ends before three blanks; if there are none,
-   !> after a colon in its second half; if there is none, before a blank.
+   !> Writes a sentence in one line, or in several if the sentence is long. A line ends before three blanks; without
+   !> these, after a colon in its second half; without such a colon, before a blank.
    subroutine write_folded(o, mark, text, next)
       type(output_t), intent(inout) :: o     !< gets the lines
       character(*), intent(in) :: mark       !< the beginning of the first line
@@ -390,7 +392,7 @@ contains
    !> Finds the shortest step from an instant to the next one in the deck's order, in the deck's unit of time. Steps of
    !> length 0 do not count. Without a step it is the largest number.
    pure real(wp) function shortest_step(settings) result(step)
-      class(settings_t), intent(in) :: settings
+      class(settings_t), intent(in) :: settings   !< of the set: the instants
       real(wp), allocatable :: times(:), steps(:)
 
       times = settings%at

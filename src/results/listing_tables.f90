@@ -26,13 +26,13 @@ module listing_tables
 
    !> The state of the listing above the next row: the heads that hold for it, and how far above they are.
    type :: listing_state_t
-      integer :: kind = no_table           !< of their table: table_turning, request_link, ...
-      integer :: part = 0                  !< of the last of them
-      integer :: lines = 0                 !< since the heads
+      integer :: kind = no_table           !< the kind of the table of these heads: table_turning, request_link, ...
+      integer :: part = 0                  !< the part of the last of these heads
+      integer :: lines = 0                 !< lines since these heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
       logical :: surplus = .false.         !< a surplus drive has been reported
       integer :: explained = 0                  !< the last instant whose reason for no values is printed
-      integer :: first = -1, last = -1     !< instants after it without values, which have no line yet; -1: none
+      integer :: first = -1, last = -1     !< later instants without values, which have no line yet; -1: none
       real(wp), allocatable :: limits(:)   !< (parts) the limit of motion before the last instant; huge: none
    end type listing_state_t
 
@@ -42,10 +42,10 @@ contains
    !> further lines. The lines have a fixed length: text that grows would cost as much as a table.
    subroutine write_times(o, l, start, times, table)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
+      type(layout_t), intent(in) :: l        !< of the set
       character(*), intent(in) :: start      !< the beginning of the line
       real(wp), intent(in) :: times(:)       !< (1 or 2) in the deck's unit
-      type(listing_state_t), intent(inout) :: table
+      type(listing_state_t), intent(inout) :: table   !< gets `lines` and `masked`
       character(line_length) :: line, part
       real(wp) :: f(3)
       integer :: i, k, used, length
@@ -89,7 +89,7 @@ contains
    !> Appends a text to a line.
    pure subroutine append(text, line, used)
       character(*), intent(in) :: text       !< with its blanks
-      character(*), intent(inout) :: line    !< which has room for it
+      character(*), intent(inout) :: line    !< with room for the text
       integer, intent(inout) :: used         !< the characters of the line that are written
 
       line(used + 1:used + len(text)) = text
@@ -98,10 +98,10 @@ contains
 
    !> Appends a number without blanks to a line.
    pure subroutine append_number(format, value, error, line, used, masked)
-      type(format_t), intent(in) :: format
+      type(format_t), intent(in) :: format   !< of the number
       real(wp), intent(in) :: value              !< the number, in the deck's units and rad
-      real(wp), intent(in) :: error          !< its rounding error
-      character(*), intent(inout) :: line    !< which has room for it
+      real(wp), intent(in) :: error          !< the rounding error of `value`
+      character(*), intent(inout) :: line    !< with room for the number
       integer, intent(inout) :: used         !< the characters of the line that are written
       logical, intent(inout) :: masked       !< becomes true if a digit is masked
       character(numeral_length) :: number
@@ -112,7 +112,7 @@ contains
 
    !> Bounds the error of the value of a drive by roundings of its numbers and of the time, in rad or lengths.
    pure real(wp) function law_error(drive, t) result(error)
-      type(head_drive_t), intent(in) :: drive
+      type(head_drive_t), intent(in) :: drive   !< of the head of an instant
       real(wp), intent(in) :: t              !< the time, in the deck's unit
 
       error = epsilon(1.0_wp)*(drive%size_of(0) + drive%size_of(1)*abs(t))
@@ -120,9 +120,9 @@ contains
 
    !> Gives a time with the digits of the set, without blanks.
    pure function time_text(l, t, error) result(text)
-      type(layout_t), intent(in) :: l
-      real(wp), intent(in) :: t              !< in the deck's unit
-      real(wp), intent(in), optional :: error   !< its error; without it 0
+      type(layout_t), intent(in) :: l        !< of the set
+      real(wp), intent(in) :: t              !< time, in the deck's unit
+      real(wp), intent(in), optional :: error   !< error of the time; without it 0
       character(:), allocatable :: text
       real(wp) :: unknown
 
@@ -131,9 +131,9 @@ contains
       text = number_text(l%time, t, unknown)
    end function time_text
 
-   !> Gives the value of a drive at a time, without blanks.
+   !> Gives the value of a drive at a time, without blanks; question marks if the error of the time is unknown.
    pure function drive_text(drive, t, error) result(text)
-      type(head_drive_t), intent(in) :: drive
+      type(head_drive_t), intent(in) :: drive   !< of the head of an instant
       real(wp), intent(in) :: t              !< the time, in the deck's unit
       real(wp), intent(in) :: error          !< the error of the time
       character(:), allocatable :: text
@@ -150,10 +150,10 @@ contains
    !> Writes the heads over rows, unless they stand there: names, powers of ten if there are any, units.
    subroutine write_heads(o, l, part, kind, table)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
+      type(layout_t), intent(in) :: l        !< of the set
       integer, intent(in) :: part            !< the independent mechanism of the rows
-      integer, intent(in) :: kind            !< of their table: table_turning, request_link, ...
-      type(listing_state_t), intent(inout) :: table
+      integer, intent(in) :: kind            !< of the table of the rows: table_turning, request_link, ...
+      type(listing_state_t), intent(inout) :: table   !< as the rows before have left it; gets these heads
       logical :: stand
 
       stand = kind == table%kind
@@ -168,13 +168,13 @@ contains
    !> Writes a row. A number that is not known is a word; a column that the row does not have is blank.
    subroutine write_row(o, l, digits, row, form, error, more, table)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: digits
-      class(row_t), intent(in) :: row
+      type(layout_t), intent(in) :: l        !< of the set
+      type(digits_t), intent(in) :: digits   !< of the part of the row
+      class(row_t), intent(in) :: row        !< the row
       integer, intent(in) :: form            !< of the row in the listing: row_link, ...
       integer, intent(in) :: more            !< decimals in addition to those of `digits`
-      real(wp), intent(in) :: error(3, 0:2)  !< the rounding error of its value
-      type(listing_state_t), intent(inout) :: table
+      real(wp), intent(in) :: error(3, 0:2)  !< the rounding error of the row's value
+      type(listing_state_t), intent(inout) :: table   !< with the heads of the row; gets `lines` and `masked`
       character(table_row_length) :: line
       real(wp) :: value
       integer :: j, cell, start, last, end_of
@@ -222,7 +222,7 @@ contains
 
    !> Gives the line that explains the mark of an unknown digit.
    function mask_words(settings) result(line)
-      class(settings_t), intent(in) :: settings
+      class(settings_t), intent(in) :: settings   !< of the set: language and closing tolerance
       character(:), allocatable :: line
 
       line = ' --- '//unknown_digit//': '//phrase(text_unknown, settings%polish)

@@ -266,7 +266,7 @@ contains
 
    !> Gives the text of a phrase, without trailing blanks, in Polish or in English.
    pure function phrase(words, polish) result(text)
-      type(phrase_t), intent(in) :: words
+      type(phrase_t), intent(in) :: words    !< the phrase
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
 

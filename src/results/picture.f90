@@ -42,9 +42,9 @@ module picture
 
 contains
 
-   !> Draws a set at the end of a page.
+   !> Draws a set at the end of a page; without a frame its last known position.
    subroutine draw_picture(page, drawing)
-      type(page_t), intent(inout), target :: page
+      type(page_t), intent(inout), target :: page   !< gets the picture
       type(drawing_t), intent(in), target :: drawing   !< the record of the set
       type(canvas_t) :: c
       type(snapshot_t) :: s
@@ -94,7 +94,7 @@ contains
    !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
    !> the sense of its acceleration.
    subroutine draw_drives(canvas)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< of the set; gets the arrows
       real(wp) :: f(0:2), sense
       integer :: i, k
 
@@ -166,7 +166,7 @@ contains
 
       !> Draws a straight arrow next to a point, on the clearer of both sides.
       subroutine draw_arrow(point, sense)
-         integer, intent(in) :: point        !< its number
+         integer, intent(in) :: point        !< number of the point
          real(wp), intent(in) :: sense(2)    !< unit vector of the plane
          real(wp), parameter :: asides(2) = arrow_aside*[1.0_wp, -1.0_wp]
          real(wp) :: e(2), start(2), lines(2, 0:arrow_pieces, size(asides))
@@ -203,11 +203,11 @@ contains
       end subroutine draw_clearest
    end subroutine draw_drives
 
-   !> Draws an arrow along a line.
+   !> Draws an arrow along a line, and records its line so that names keep clear of it.
    subroutine draw_arrow_line(canvas, line, of_line, of_tip)
-      type(canvas_t), intent(inout) :: canvas
-      real(wp), intent(in) :: line(:, :)     !< (2, points) pixels; the last piece is its tip
-      character(*), intent(in) :: of_line, of_tip   !< attributes of SVG
+      type(canvas_t), intent(inout) :: canvas   !< of the set; gets the arrow
+      real(wp), intent(in) :: line(:, :)     !< (2, points) pixels; the last piece is the tip of the arrow
+      character(*), intent(in) :: of_line, of_tip   !< attributes of the line and of the tip, as SVG
       real(wp) :: e(2)
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
@@ -218,11 +218,11 @@ contains
       call add_lines(canvas, line, arrow_weight)
    end subroutine draw_arrow_line
 
-   !> Draws the ring of an instant centre, with its name; if it is outside the picture, writes a line with its place at
-   !> the foot of the page. An instant centre at infinity has none.
+   !> Draws the ring of an instant centre, with its name; if the centre is outside the picture, writes a line with its
+   !> place at the foot of the page. An instant centre at infinity has none.
    subroutine draw_centre(canvas, page, i)
-      type(canvas_t), intent(inout) :: canvas
-      type(page_t), intent(inout) :: page
+      type(canvas_t), intent(inout) :: canvas   !< of the set; gets the ring
+      type(page_t), intent(inout) :: page    !< with the canvas at its end
       integer, intent(in) :: i               !< number of the pole among those of the drawing
       real(wp), parameter :: radius = 4.0_wp   !< pixels
       type(label_t) :: label
@@ -255,7 +255,7 @@ contains
 
    !> Draws the velocities of the points whose paths are drawn, as arrows, and their scale below that of lengths.
    subroutine draw_velocities(canvas)
-      type(canvas_t), intent(inout) :: canvas
+      type(canvas_t), intent(inout) :: canvas   !< of the set, with arrows; gets the velocities
       real(wp) :: v(2, size(canvas%drawing%curves)), scale, p(2), tip(2)
       integer :: k
 
@@ -285,7 +285,7 @@ contains
    !> Finds the number of the frame that is drawn in full. It is the first frame, of those in which most links are
    !> known, that is wide across. Reason: links that are collinear at the first instant are read better later.
    integer function clearest(drawing, list) result(best)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< of the set
       integer, intent(in) :: list(:)         !< (1 or more) numbers of the frames to choose from
       real(wp) :: across(size(list))
       logical :: most(size(list))
@@ -299,8 +299,8 @@ contains
 
    !> Finds the sides (2) of the box that the known moving links cover at a position, in lengths; 0 if none is known.
    pure function sides_of(drawing, snapshot) result(sides)
-      type(drawing_t), intent(in) :: drawing
-      type(snapshot_t), intent(in) :: snapshot
+      type(drawing_t), intent(in) :: drawing   !< of the set
+      type(snapshot_t), intent(in) :: snapshot   !< the position
       real(wp) :: sides(2), low(2), high(2)
       integer :: i
 
@@ -317,10 +317,10 @@ contains
       if (all(high >= low)) sides = high - low
    end function sides_of
 
-   !> Chooses the frames that are drawn faint: evenly spaced, without those that are almost equal to the frame in full
-   !> or to one another.
+   !> Chooses the frames (any number) that are drawn faint: evenly spaced, without those that are almost equal to the
+   !> frame in full or to one another.
    function faint_frames(drawing, own, best) result(list)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< of the set
       integer, intent(in) :: own(:)          !< (1 or more) numbers of the frames to choose from
       integer, intent(in) :: best            !< number of the frame in full
       integer, allocatable :: list(:)
@@ -337,10 +337,10 @@ contains
       end do
    end function faint_frames
 
-   !> Finds the largest distance of a corner between two frames, in parts of the mechanism; 1 if one of them lacks a
-   !> link.
+   !> Finds the largest distance of a corner between two frames, in parts of the mechanism; 1 if a link is known in one
+   !> of them only.
    real(wp) function distance(drawing, i, j)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< of the set
       integer, intent(in) :: i, j            !< numbers of the frames
       real(wp) :: extent
       integer :: k
@@ -359,7 +359,8 @@ contains
       if (distance > 0.0_wp) distance = distance/max(extent, distance)
    end function distance
 
-   !> Gives the velocity (2) of a point at a position; 0 if it is not known.
+   !> Gives the velocity (2) of a point at a position, in the deck's units, from velocity and rate of its link; 0 if
+   !> these are not known.
    pure function point_velocity(m, snapshot, i) result(v)
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: snapshot   !< of a drawing with arrows

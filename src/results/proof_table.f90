@@ -28,8 +28,8 @@ contains
    subroutine write_proofs(o, l, proofs, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(proofs_t), intent(in) :: proofs
-      class(set_t), intent(in) :: set
+      type(proofs_t), intent(in) :: proofs   !< after the last instant
+      class(set_t), intent(in) :: set        !< of the proofs
       character(:), allocatable :: start, closure_error
       integer :: i
 
@@ -71,8 +71,8 @@ contains
 
    !> Gives the reason why an instant is not proved in words.
    function words_of(reason, set) result(words)
-      type(reason_t), intent(in) :: reason
-      class(set_t), intent(in) :: set          !< the set
+      type(reason_t), intent(in) :: reason   !< of an instant of the set
+      class(set_t), intent(in) :: set          !< of the reason
       character(:), allocatable :: words
 
       if (reason%flag /= flag_none) then

@@ -20,8 +20,8 @@ contains
    !> Writes the ranges of drives after the last instant of a set.
    subroutine write_ranges(o, set, list)
       type(output_t), intent(inout) :: o     !< the listing
-      class(set_t), intent(in) :: set
-      type(range_t), intent(in) :: list(:)   !< in the order of the drives
+      class(set_t), intent(in) :: set        !< of the ranges
+      type(range_t), intent(in) :: list(:)   !< (any number) in the order of the drives
       character(:), allocatable :: words
       integer :: i, side
 

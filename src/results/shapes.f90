@@ -63,7 +63,7 @@ contains
    !> Gives the shapes of a drawing in the order in which they are drawn. A joint belongs to that of its links which is
    !> drawn later.
    function shapes_of(drawing, scale) result(list)
-      type(drawing_t), intent(in) :: drawing
+      type(drawing_t), intent(in) :: drawing   !< of the set, after its last instant
       real(wp), intent(in) :: scale          !< pixels in a unit of length
       type(element_t), allocatable :: list(:)
       character(:), allocatable :: stroke
@@ -158,7 +158,7 @@ contains
          character(*), intent(in) :: element   !< 'circle', 'polyline', 'polygon' of SVG, or 'centrode'
          character(*), intent(in) :: attributes   !< of SVG
          real(wp), intent(in) :: p(:, :)     !< (2, places) in lengths, in the axes of the link
-         real(wp), intent(in), optional :: pixels(:, :)   !< (2, places) in addition to them; without it 0
+         real(wp), intent(in), optional :: pixels(:, :)   !< (2, places) in addition to `p`; without it 0
          real(wp), intent(in), optional :: weight   !< for names, as in `element_t`; without it 0
          real(wp), intent(in), optional :: radius   !< pixels, as in `element_t`; without it 0
          logical, intent(in), optional :: is_faint   !< a faint position shows its outline; without it not
@@ -175,7 +175,7 @@ contains
       !> Adds the pieces of a line through places; none if all are one place for the eye, as the pole of two links that
       !> a joint holds together.
       subroutine add_pieces(link, element, attributes, p, goes_on)
-         integer, intent(in) :: link         !< the number of its link; 0: the fixed plane
+         integer, intent(in) :: link         !< the number of the link with which the line moves; 0: the fixed plane
          character(*), intent(in) :: element   !< 'polyline' or 'centrode'
          character(*), intent(in) :: attributes   !< of SVG
          real(wp), intent(in) :: p(:, :)     !< (2, places) in lengths, in the axes of the link
@@ -214,7 +214,7 @@ contains
       !> Adds a guide: a line over the range of the slide. A guide of the ground has a hatch. A guide of a moving link
       !> is a rod; it begins where the perpendicular from its pivot meets it, if the perpendicular can be seen.
       subroutine add_guide(guide)
-         type(guide_t), intent(in) :: guide
+         type(guide_t), intent(in) :: guide  !< not of a cylinder, with a range
          real(wp), allocatable :: p(:, :), pixels(:, :)
          real(wp) :: e(2), aside(2), further
 
@@ -245,7 +245,7 @@ contains
 
       !> Adds the cylinder of a guide: a rod from Q, and over it a barrel from P.
       subroutine add_cylinder(guide)
-         type(guide_t), intent(in) :: guide
+         type(guide_t), intent(in) :: guide  !< of a cylinder, with a range
          real(wp) :: e(2), aside(2), least
 
          least = max(guide%low, 0.0_wp)
@@ -266,8 +266,8 @@ contains
       end subroutine add_cylinder
 
       !> Adds the centrode of a pole in one of its links, in the axes of that link: both centrodes touch at the instant
-      !> centre. It may run to infinity; the window of the picture cuts it. If the sense of the relative turn changes,
-      !> the centre has passed through infinity. A place farther away than `farthest_place` is not drawn.
+      !> centre. The centrode may run to infinity; the window of the picture cuts it. If the sense of the relative turn
+      !> changes, the centre has passed through infinity. A place farther away than `farthest_place` is not drawn.
       subroutine add_centrode(i, side)
          integer, intent(in) :: i            !< the number of the pole among those of the drawing
          integer, intent(in) :: side         !< which of its links, 1 or 2
@@ -298,7 +298,7 @@ contains
 
    !> Gives the color of a moving link, or of a circuit.
    pure function color_of(i) result(color)
-      integer, intent(in) :: i               !< its number, from 1
+      integer, intent(in) :: i               !< number of the link or circuit, from 1
       character(len(colors)) :: color
 
       color = colors(1 + modulo(i - 1, size(colors)))
@@ -317,7 +317,7 @@ contains
    !> Gives the name of a pole: the names of both its links, with a dash.
    pure function pole_name(m, i) result(name)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i               !< its number among the requests
+      integer, intent(in) :: i               !< number of the pole among the requests
       character(:), allocatable :: name
 
       name = trim(m%links(m%requests(i)%second)%name)//'-'//trim(m%links(m%requests(i)%subject)%name)

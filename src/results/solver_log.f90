@@ -15,21 +15,22 @@ contains
    !> Writes the set's method and the names of the columns.
    subroutine log_head(o, m)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< the set
 
       call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method_words(m%method)))
       call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL CORRECTION  SIGN OF DET' &
          //'   BRANCH  SUBSTEPS  KANTOROVICH')
    end subroutine log_head
 
-   !> Writes the line of an instant: its number and time; how the iteration ended, its count, last residual and step
-   !> (over the size of the coordinates); the sign of the determinant; the branch and its certificate.
+   !> Writes the line of an instant of one independent mechanism: number and time; how the iteration ended, its count,
+   !> last residual and step (over the size of the coordinates); the sign of the determinant; the branch and its
+   !> certificate.
    subroutine log_instant(o, step, t, convergence, branch)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step            !< number of the instant, from 0
-      real(wp), intent(in) :: t              !< time
-      type(solve_report_t), intent(in) :: convergence
-      type(branch_t), intent(in) :: branch
+      real(wp), intent(in) :: t              !< time, in the deck's unit
+      type(solve_report_t), intent(in) :: convergence   !< of the instant
+      type(branch_t), intent(in) :: branch   !< of the instant
       character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
       character(116) :: line
 

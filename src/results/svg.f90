@@ -12,7 +12,7 @@ module svg
    !> A page of pictures, one below the other. Its text is held until all are drawn, since its first line has the
    !> height of the page.
    type :: page_t
-      type(output_t) :: body
+      type(output_t) :: body                 !< the text of all pictures so far
       integer :: height = 0                  !< of all pictures so far (pixels)
    end type page_t
 
@@ -54,10 +54,10 @@ module svg
 
 contains
 
-   !> Begins the file of a page, which is empty.
+   !> Begins the file of a page without pictures.
    subroutine begin_page(o, page)
       type(output_t), intent(inout) :: o
-      type(page_t), intent(out) :: page
+      type(page_t), intent(out) :: page      !< without pictures
 
       call put(o, xml_line)
       allocate (character(1) :: page%body%buffer)
@@ -67,7 +67,7 @@ contains
    !> Writes a page to its file, with a white ground.
    subroutine end_page(o, page)
       type(output_t), intent(inout) :: o
-      type(page_t), intent(in) :: page
+      type(page_t), intent(in) :: page       !< with all pictures
       character(:), allocatable :: height
       integer :: i
 
@@ -94,7 +94,7 @@ contains
       if (len(title) > 0) call put(o, '<title>'//escaped(title)//'</title>')
    end subroutine open_group
 
-   !> Ends the element that was begun last.
+   !> Ends a group or a picture, which was begun last.
    subroutine close_group(o, element)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element    !< 'g': a group; 'svg': a picture
@@ -115,7 +115,7 @@ contains
    !> Writes a line through places.
    subroutine draw_line(o, element, p, attributes)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: element    !< 'polyline', or 'polygon', which closes it
+      character(*), intent(in) :: element    !< 'polyline', or 'polygon', which closes the line
       character(*), intent(in) :: attributes   !< of the line
       real(wp), intent(in) :: p(:, :)        !< (2, places) pixels
 
@@ -125,8 +125,8 @@ contains
    !> Writes words at a place.
    subroutine draw_words(o, p, anchor, attributes, words)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2)           !< pixels of a point of their foot line
-      character(*), intent(in) :: anchor     !< that point: 'start', 'middle' or 'end'
+      real(wp), intent(in) :: p(2)           !< pixels of a point of the words' foot line
+      character(*), intent(in) :: anchor     !< the place of that point on the line: 'start', 'middle' or 'end'
       character(*), intent(in) :: attributes   !< of the words
       character(*), intent(in) :: words      !< not escaped
 
@@ -134,10 +134,10 @@ contains
          //escaped(words)//'</text>')
    end subroutine draw_words
 
-   !> Writes an element whose last attribute has the columns of an array.
+   !> Writes an element whose last attribute has the columns of an array as text.
    subroutine draw_columns(o, begins, values, inside, between)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: begins     !< the element up to the quote of that attribute
+      character(*), intent(in) :: begins     !< the element up to the quote of this attribute
       real(wp), intent(in) :: values(:, :)   !< (numbers, columns) pixels or degrees
       character(*), intent(in) :: inside     !< between the numbers of a column
       character(*), intent(in) :: between    !< between columns
@@ -154,10 +154,10 @@ contains
       call put(o, '"/>')
    end subroutine draw_columns
 
-   !> Begins a window: only this part of the following elements is seen.
+   !> Begins a window: only this part of the following elements is seen, until `close_group` ends the window.
    subroutine draw_window(o, low, high)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: low(2), high(2)   !< pixels of its upper left and its lower right corner
+      real(wp), intent(in) :: low(2), high(2)   !< pixels of the upper left and the lower right corner of the window
 
       call put(o, '<svg x="'//pixels(low(1))//'" y="'//pixels(low(2))//'" width="'//pixels(high(1) - low(1)) &
          //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//pixels(low(1))//' '//pixels(low(2))//' ' &

@@ -17,7 +17,7 @@ module table
 
    !> How the numbers of a column are printed.
    type :: format_t
-      integer :: decimals = digits_after_first
+      integer :: decimals = digits_after_first   !< digits after the point
       integer :: power = 0                   !< printed is the value over 10**power
       logical :: is_angle = .false.          !< the value is in rad
       real(wp) :: unit = 1.0_wp              !< of an angle: radians in the unit in which it is printed
@@ -28,7 +28,7 @@ module table
       integer :: kind = cell_none            !< cell_none, ...
       real(wp) :: value = 0.0_wp             !< of a number or a count
       real(wp) :: error = 0.0_wp             !< the rounding error of the value
-      character(3*label_length + 2) :: word = ''
+      character(3*label_length + 2) :: word = ''   !< of cell_word
    end type cell_t
 
    !> The order of a number is raised by this margin, so that rounding does not put 1000 below 10**3.
@@ -44,10 +44,10 @@ contains
    pure subroutine write_cell(format, more, cell, value, error, words, field, masked)
       type(format_t), intent(in) :: format   !< of the column
       integer, intent(in) :: more            !< decimals in addition to those of `format`
-      integer, intent(in) :: cell            !< its contents: cell_none, ...
+      integer, intent(in) :: cell            !< contents of the cell: cell_none, ...
       real(wp), intent(in) :: value          !< in the deck's units and rad
       real(wp), intent(in) :: error          !< the rounding error of `value`
-      character(numeral_length), intent(in) :: words(cell_none:)   !< as in `layout_t`
+      character(numeral_length), intent(in) :: words(cell_none:)   !< of the set, for cells without a number
       character(numeral_length), intent(out) :: field   !< the cell
       logical, intent(inout) :: masked       !< becomes true if a digit or a word is masked
 
@@ -89,7 +89,7 @@ contains
 
    !> Gives a number of the listing without blanks.
    pure function number_text(format, value, error) result(text)
-      type(format_t), intent(in) :: format
+      type(format_t), intent(in) :: format   !< of the column
       real(wp), intent(in) :: value          !< in the deck's units and rad
       real(wp), intent(in) :: error          !< the rounding error of `value`
       character(:), allocatable :: text
@@ -104,8 +104,8 @@ contains
    pure function cell_text(format, by_size, cell, words) result(text)
       type(format_t), intent(in) :: format   !< of the column
       logical, intent(in) :: by_size         !< each number has the digits and the power of ten for its own size
-      type(cell_t), intent(in) :: cell
-      character(numeral_length), intent(in) :: words(cell_none:)   !< as in `layout_t`
+      type(cell_t), intent(in) :: cell       !< of a row of variants
+      character(numeral_length), intent(in) :: words(cell_none:)   !< of the set, for cells without a number
       character(:), allocatable :: text
       character(:), allocatable :: exponent
       type(format_t) :: own
@@ -148,8 +148,8 @@ contains
    !> Appends a cell of a file: a number with all digits, a count, a word, or nothing.
    subroutine add_cell(o, cell, degrees)
       type(output_t), intent(inout) :: o     !< the file
-      type(cell_t), intent(in) :: cell
-      logical, intent(in) :: degrees         !< its number is an angle, and the file has angles in degrees
+      type(cell_t), intent(in) :: cell       !< the cell
+      logical, intent(in) :: degrees         !< the number is an angle, and the file has angles in degrees
 
       select case (cell%kind)
       case (cell_number)
@@ -167,7 +167,7 @@ contains
    subroutine add_number(o, value, degrees)
       type(output_t), intent(inout) :: o     !< the file
       real(wp), intent(in) :: value          !< in the deck's units and rad
-      logical, intent(in) :: degrees         !< it is an angle, and the file has angles in degrees
+      logical, intent(in) :: degrees         !< the number is an angle, and the file has angles in degrees
       character(full_length) :: text
       integer :: length
 
@@ -203,16 +203,16 @@ contains
    !> Gives a unit with its power of ten, if there is one.
    pure function unit_of(power, unit) result(text)
       integer, intent(in) :: power           !< the exponent; 0: none
-      character(*), intent(in) :: unit       !< its name
+      character(*), intent(in) :: unit       !< name of the unit
       character(:), allocatable :: text
 
       text = unit
       if (power /= 0) text = power_text(power)//' '//unit
    end function unit_of
 
-   !> Gives a text at the end of a field.
+   !> Gives a text at the right end of a field.
    pure function right(text, n) result(field)
-      character(*), intent(in) :: text       !< the whole field if it is longer
+      character(*), intent(in) :: text       !< the field is as long if the text is longer than `n`
       integer, intent(in) :: n               !< characters of the field
       character(max(n, len(text))) :: field
 

@@ -29,20 +29,22 @@ module variant_rows
 
    !> A column: its name in a file, and its form in the listing.
    type :: summary_column_t
-      character(80) :: name = ''
-      logical :: printed = .false.                  !< it is in the listing too
-      character(6*label_length) :: above = '', below = ''   !< the lines over it
-      character(3*label_length) :: unit = ''
-      type(format_t) :: format = format_t(decimals=0)
+      character(80) :: name = ''                    !< in a file
+      logical :: printed = .false.                  !< the column is in the listing too
+      character(6*label_length) :: above = '', below = ''   !< the lines over the column
+      character(3*label_length) :: unit = ''        !< name of the unit; '': none
+      type(format_t) :: format = format_t(decimals=0)   !< of all values
       logical :: by_size = .false.                  !< instead, each value has the digits for its own size
    end type summary_column_t
 
+   !> The columns of the summary of a set.
    type :: summary_t
-      type(summary_column_t), allocatable :: columns(:)
+      type(summary_column_t), allocatable :: columns(:)   !< in the order of the file
       integer :: numbers = 0                        !< that vary: columns 2 to numbers + 1
       type(table_t) :: extremes                     !< the columns of EXTREMES cards
    end type summary_t
 
+   !> The row of a variant, with the counts of its instants.
    type, extends(counts_t) :: variant_row_t
       integer :: number = 0                         !< of the variant
       type(cell_t), allocatable :: cells(:)         !< (columns)
@@ -53,9 +55,9 @@ contains
 
    !> Makes the columns of the summary of a set.
    function new_summary(set, l, variation) result(s)
-      class(set_t), intent(in) :: set
-      type(layout_t), intent(in) :: l
-      type(variation_t), intent(in) :: variation   !< its variants
+      class(set_t), intent(in) :: set        !< of the deck
+      type(layout_t), intent(in) :: l        !< of the set
+      type(variation_t), intent(in) :: variation   !< the variants of the set
       type(summary_t) :: s
       character(:), allocatable :: drives(:), name
       integer :: i
@@ -95,18 +97,18 @@ contains
 
    contains
 
-      !> Adds a column.
+      !> Adds a column to the summary.
       subroutine add_column(column)
-         type(summary_column_t), intent(in) :: column
+         type(summary_column_t), intent(in) :: column   !< the column
 
          s%columns = [s%columns, column]
       end subroutine add_column
 
       !> Adds the column of the values of a drive.
       subroutine add_drive(number, start, above, below)
-         integer, intent(in) :: number       !< of the drive in the set; 0: none, the column is empty
+         integer, intent(in) :: number       !< number of the drive in the set; 0: none, the column is empty
          character(*), intent(in) :: start   !< the beginning of the name of the column
-         character(*), intent(in) :: above, below   !< the lines over it; blank if it is only in the file
+         character(*), intent(in) :: above, below   !< the lines over the column; blank: it is only in the file
          type(summary_column_t) :: c
          type(drive_t) :: drive
 
@@ -162,7 +164,7 @@ contains
       end subroutine add_extremes
    end function new_summary
 
-   !> Makes the column of a varied number. If earlier ones have its name, a number counts them.
+   !> Makes the column of a varied number. If earlier numbers have its name, their count follows the name.
    function number_column(numbers) result(c)
       type(varied_t), intent(in) :: numbers(:)   !< (1 or more) the last one gets the column
       type(summary_column_t) :: c
@@ -180,11 +182,11 @@ contains
       end associate
    end function number_column
 
-   !> Makes the row of a variant, with its values only.
+   !> Makes the row of a variant, with the values of its varied numbers only.
    function new_row(summary, variation, n) result(r)
-      type(summary_t), intent(in) :: summary
-      type(variation_t), intent(in) :: variation
-      integer, intent(in) :: n               !< number of the variant
+      type(summary_t), intent(in) :: summary   !< of the set
+      type(variation_t), intent(in) :: variation   !< the variants of the set
+      integer, intent(in) :: n               !< number of the variant, from 1
       type(variant_row_t) :: r
       real(wp) :: values(summary%numbers)
       integer :: i
@@ -198,12 +200,13 @@ contains
       end do
    end function new_row
 
-   !> Fills the cells of the row of a variant, after its last instant.
+   !> Fills the cells of the row of a variant, after its last instant. A variant that is rejected has the code of its
+   !> error in the place of the flag, and no answers.
    subroutine fill_row(summary, set, asked, row)
-      type(summary_t), intent(in) :: summary
-      class(set_t), intent(in) :: set        !< the variant
-      type(answers_t), intent(in) :: asked   !< the answers to its cards
-      type(variant_row_t), intent(inout) :: row
+      type(summary_t), intent(in) :: summary   !< of the set
+      class(set_t), intent(in) :: set        !< the variant; the set of the deck if the variant is rejected
+      type(answers_t), intent(in) :: asked   !< the answers to the cards of the variant
+      type(variant_row_t), intent(inout) :: row   !< with its counts and values; gets the other cells
       type(strokes_t) :: strokes
       integer :: n, i, k, which, order
 
@@ -276,21 +279,21 @@ contains
 
    contains
 
-      !> Fills the next cell.
+      !> Fills the next cell of the row.
       subroutine next(cell)
-         type(cell_t), intent(in) :: cell
+         type(cell_t), intent(in) :: cell    !< the contents
 
          n = n + 1
          row%cells(n) = cell
       end subroutine next
    end subroutine fill_row
 
-   !> Finds the coordinate and the derivative of a column of extremes.
+   !> Finds the coordinate and the derivative of a column of extremes, which some coordinate has.
    pure subroutine find_number(coordinates, column, k, order)
-      type(coordinate_t), intent(in) :: coordinates(:)   !< of its mechanism
-      type(table_column_t), intent(in) :: column
+      type(coordinate_t), intent(in) :: coordinates(:)   !< (any number) of the mechanism of the column
+      type(table_column_t), intent(in) :: column   !< of the summary
       integer, intent(out) :: k              !< the number of the coordinate
-      integer, intent(out) :: order          !< of its derivative
+      integer, intent(out) :: order          !< 0 to 2: which derivative of the coordinate
 
       do k = 1, size(coordinates)
          if (coordinates(k)%request /= column%request) cycle
@@ -304,8 +307,8 @@ contains
    !> Makes the cell of the value of a drive at a time; an empty one without a drive.
    type(cell_t) function drive_cell(set, number, t) result(cell)
       class(set_t), intent(in) :: set
-      integer, intent(in) :: number          !< of the drive in the set; 0: none
-      real(wp), intent(in) :: t              !< time
+      integer, intent(in) :: number          !< number of the drive in the set; 0: none
+      real(wp), intent(in) :: t              !< time, in the deck's unit
       type(drive_t) :: drive
       real(wp) :: f(3)
 

@@ -24,10 +24,10 @@ module variant_tables
 
 contains
 
-   !> Writes the names of the columns to a file.
+   !> Writes the names of the columns of a summary to a file.
    subroutine summary_head(o, summary)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: summary
+      type(summary_t), intent(in) :: summary   !< of the set
       integer :: i
 
       call add(o, 'set')
@@ -38,12 +38,12 @@ contains
       call put(o, '')
    end subroutine summary_head
 
-   !> Writes a row to a file with all digits; a cell without a value is empty.
+   !> Writes the row of a variant to a file with all digits; a cell without a value is empty.
    subroutine summary_row(o, summary, settings, row)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: summary
-      class(settings_t), intent(in) :: settings
-      type(variant_row_t), intent(in) :: row
+      type(summary_t), intent(in) :: summary   !< of the set
+      class(settings_t), intent(in) :: settings   !< of the set
+      type(variant_row_t), intent(in) :: row   !< of the variant, filled
       integer :: i
 
       call add(o, whole(settings%set_number))
@@ -57,10 +57,10 @@ contains
    !> Writes the lines over the tables of one variant: its number and its values.
    subroutine write_variant(o, l, summary, settings, row)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(summary_t), intent(in) :: summary
-      class(settings_t), intent(in) :: settings
-      type(variant_row_t), intent(in) :: row
+      type(layout_t), intent(in) :: l        !< of the set
+      type(summary_t), intent(in) :: summary   !< of the set
+      class(settings_t), intent(in) :: settings   !< of the set
+      type(variant_row_t), intent(in) :: row   !< of the variant
       character(:), allocatable :: line, item
       integer :: i
 
@@ -83,7 +83,7 @@ contains
    !> Writes the heads of the table: for each of its lines of columns the names, powers of ten and units.
    subroutine write_variant_heads(o, summary)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: summary
+      type(summary_t), intent(in) :: summary   !< of the set
       integer, allocatable :: starts(:)
       integer :: n, k, i
       character(:), allocatable :: line
@@ -108,13 +108,13 @@ contains
       end do
    end subroutine write_variant_heads
 
-   !> Writes the lines of a row, and below them the reason if it is not complete.
+   !> Writes the lines of the row of a variant, and below them the reason if the row is not complete.
    subroutine write_variant_row(o, l, summary, set, row)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(summary_t), intent(in) :: summary
-      class(set_t), intent(in) :: set
-      type(variant_row_t), intent(in) :: row
+      type(layout_t), intent(in) :: l        !< of the set
+      type(summary_t), intent(in) :: summary   !< of the set
+      class(set_t), intent(in) :: set        !< of the deck
+      type(variant_row_t), intent(in) :: row   !< of the variant, filled
       integer, allocatable :: starts(:)
       integer :: n, i
       character(:), allocatable :: line
@@ -137,10 +137,10 @@ contains
       end if
    end subroutine write_variant_row
 
-   !> Writes the last line of a set of variants. With a closing tolerance the line before explains `?` in their rows.
+   !> Writes the last line of a set of variants. With a closing tolerance the line before explains `?` in the rows.
    subroutine write_variants_end(o, settings)
       type(output_t), intent(inout) :: o
-      class(settings_t), intent(in) :: settings
+      class(settings_t), intent(in) :: settings   !< of the set
 
       if (settings%closing > 0.0_wp) call put(o, mask_words(settings))
       call put(o, '')
@@ -149,9 +149,9 @@ contains
       call put(o, '')
    end subroutine write_variants_end
 
-   !> Counts the characters of a column in the listing; 0 if it is not there.
+   !> Counts the characters of a column in the listing; 0 if the column is only in the file.
    pure integer function width(column)
-      type(summary_column_t), intent(in) :: column
+      type(summary_column_t), intent(in) :: column   !< of the summary
 
       width = 0
       if (.not. column%printed) return
