@@ -43,7 +43,7 @@ module command_line
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       integer :: jobs = 0                    !< processes at a time; 0: one for each processor
-      !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER', 'EXPLAIN' or ''.
+      !> The text that is printed instead of computing: 'HELP', 'VERSION', 'RULER', 'EXPLAIN' or ''.
       character(:), allocatable :: show
    end type options_t
 
@@ -181,6 +181,7 @@ contains
 
       asked = [(allocated(options%files(k)%text), k=1, out_last)]
       is_study = (options%study .or. options%time) .and. len(options%show) == 0
+
       ! A study and times are no listing; a study reads its deck more than once. Two outputs on standard output could
       ! not be told apart. Without motion there is nothing to draw.
       if (is_study .and. (any(asked(out_listing + 1:)) .or. options%errors .or. options%check .or. options%no_listing &

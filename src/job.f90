@@ -176,10 +176,10 @@ contains
       process_count = min(process_count, sum(max(1, sets%variants)))
    end function process_count
 
-   !> Computes and writes the sets of the part at hand, one after another. The texts of all parts in their order are the
+   !> Computes and writes the sets of the current part, one after another. The texts of all parts in their order are the
    !> text of the whole. After a signal or a failed output no further set is computed.
    subroutine run_sets(sets, structure_report, writers)
-      type(writers_t), intent(inout) :: writers   !< open, with the part at hand
+      type(writers_t), intent(inout) :: writers   !< open, with the current part
       type(mechanism_t), intent(inout) :: sets(writers%first:)   !< (sets of the share) lose their cards
       type(structure_report_t), intent(inout) :: structure_report(writers%first:)   !< (sets of the share) are used up
       type(page_t), target :: pages(out_svg:out_circuits)
@@ -195,7 +195,7 @@ contains
       if (writers%asked(out_dxf)) call begin_dxf(writers%files(out_dxf))
 
       before = writers%first - 1
-      ! If no set has variants, those before the part at hand need not be counted.
+      ! If no set has variants, those before the current part need not be counted.
       if (.not. writers%varies) before = writers%own_first - 1
       do i = before + 1, writers%last
          if (before >= writers%own_last) exit
@@ -218,7 +218,7 @@ contains
             pages)
          if (writers%asked(out_dxf)) call export_set(sets(i), i - writers%first + 1, writers)
          if (writers%asked(out_circuits) .and. sets(i)%circuits) then
-            ! As a picture, circuits have an analysis of their own.
+            ! Circuits have an analysis of their own, like a picture.
             call make_set_analysis(sets(i), a)
             call advance_set(a, instant(sets(i), 0))
             call find_all_circuits(a, found)

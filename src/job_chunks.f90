@@ -4,7 +4,7 @@
 !> part undone, and no part after that is written.
 !>
 !> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
-!> each part at hand: who waits for a part waits for its lock, which the system opens as well if its process dies.
+!> each part that is computed: who waits for a part waits for its lock, which the system opens as well if its process dies.
 !>
 !> Rejected: a pipe from process to process. A part then belongs to a process before it begins, so that unequal parts
 !> leave one idle.
@@ -45,7 +45,7 @@ module job_chunks
 
 contains
 
-   !> Computes the sets or variants of the share `outputs%share` in several processes. It returns more than once:
+   !> Computes the sets or variants of the share `outputs%share` in several processes. The call returns more than once:
    !>
    !> - in each child, which computes the parts that `next_part` gives, and ends then;
    !> - in the parent when all is done: `next_part` gives no part.
@@ -115,7 +115,7 @@ contains
       end associate
    end subroutine run_chunks
 
-   !> Ends the part at hand, if there is one, and begins the next: its sets or variants are outputs%own_first to
+   !> Ends the current part, if there is one, and begins the next: its sets or variants are outputs%own_first to
    !> outputs%own_last. False if there is no further part or the job is over; then all is written.
    logical function next_part(outputs)
       class(outputs_t), intent(inout) :: outputs   !< of this process; get the next part
@@ -130,7 +130,7 @@ contains
                s%held = .false.
                call write_in_order(outputs, max_ahead)
             else
-               ! What is not complete is written in its turn, and no part after it.
+               ! A part that is not complete is written in its turn, and no part after it.
                call write_in_order(outputs, -1)
             end if
          end if
@@ -148,7 +148,7 @@ contains
             if (s%held) then
                files%held = .true.
                do k = 1, size(files)
-                  ! What the first part has emptied is not emptied again.
+                  ! Files that the first part has emptied are not emptied again.
                   if (allocated(files(k)%buffer)) files(k)%emptied = s%part > 1 .or. len(files(k)%path) == 0
                end do
                call write_in_order(outputs, max_held_length)
@@ -199,7 +199,7 @@ contains
             do k = 1, size(files)
                if (.not. allocated(files(k)%buffer)) cycle
                if (size(s%waiting) > 0) call write_held(files(k), s%lengths(k, 1))
-               ! Further text of the part at hand is not held.
+               ! Further text of the current part is not held.
                if (size(s%waiting) == 0) call release_output(files(k))
             end do
             if (size(s%waiting) == 0) s%held = .false.

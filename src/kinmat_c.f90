@@ -34,7 +34,7 @@ module kinmat_c
       character(:), allocatable :: message          !< why the set is rejected, or ''; with a null after it
       logical :: is_ready = .false.                 !< the set can be solved
       real(wp) :: last = -huge(1.0_wp)              !< time of the last call that was accepted, in the deck's unit
-      integer :: calls = 0                          !< that were accepted
+      integer :: calls = 0                          !< accepted calls
       logical :: as_in_deck = .true.                !< all these calls were for the instants of the deck in their order
    end type handle_t
 

@@ -21,8 +21,8 @@ module outputs
       !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
       !> lock of a part is that of a byte of the first.
       integer(c_int) :: taken = -1, done = -1
-      integer :: part = 0                       !< number of the part at hand
-      logical :: held = .false.                 !< the text of the part at hand is held
+      integer :: part = 0                       !< number of the current part
+      logical :: held = .false.                 !< the text of the current part is held
       integer :: look = 0                       !< characters that an output holds at the next look for the turn
       integer, allocatable :: waiting(:)        !< (any number) complete parts whose turn has not come
       integer, allocatable :: lengths(:, :)     !< (outputs, waiting) characters of these parts in each output
@@ -32,7 +32,7 @@ module outputs
    !> The outputs of a job, or of a process of it.
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for these: no other is open
-      type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the set at hand
+      type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the current set
       type(failure_t), allocatable :: failure               !< of the last file that could not be opened or written
       type(job_chunk_t) :: share                            !< of this process
       !> The sets that this process computes now; if the deck has VARY cards, numbers of variants, counted through all

@@ -152,7 +152,7 @@ contains
       call build_variant(variation, row%number, run%m, row%rejected)
       run%is_over = row%rejected /= ''
       if (run%is_over) return
-      ! A variant with the structure of the one before takes over what that has made.
+      ! A variant with the structure of the previous variant takes over its analysis.
       call reuse_set_analysis(run%m, run%s, is_done)
       if (.not. is_done) then
          call check_variant(run%m, structure_report, row)

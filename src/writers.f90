@@ -41,7 +41,7 @@ module writers
       type(variation_t), allocatable :: variations(:)   !< (sets of the deck) empty without VARY cards
    end type writers_t
 
-   !> What is printed of a motion, and what the outputs keep from instant to instant.
+   !> The instants of a motion that are printed, and all that the outputs keep from instant to instant.
    type :: printing_t
       logical :: lists = .false.             !< the listing has tables over the instants
       logical :: each = .false.              !< something is printed at every instant

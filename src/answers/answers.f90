@@ -37,8 +37,8 @@ contains
    !> Prepares the answers of a set, before its first instant.
    subroutine new_answers(set, lists, answers)
       type(set_analysis_t), intent(in) :: set   !< before its first instant
-      logical, intent(in) :: lists           !< its tables are written: only these have the shares of tolerances
-      type(answers_t), intent(out) :: answers
+      logical, intent(in) :: lists           !< tables are written: only these have shares of tolerances
+      type(answers_t), intent(out) :: answers   !< without an instant
       type(request_t), allocatable :: requests(:)
       integer :: c
 
@@ -61,7 +61,7 @@ contains
       type(set_analysis_t), intent(inout) :: set   !< at the instant
       type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       integer, intent(in) :: k               !< the number of the instant, from 0
-      logical, intent(in) :: due             !< it is printed
+      logical, intent(in) :: due             !< the instant is printed
 
       if (set%now%proves) call record_proof(answers%proofs, set, k, due)
       if (set%now%ranges .and. k == 0) call find_ranges(set, answers%ranges)

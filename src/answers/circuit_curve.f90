@@ -172,7 +172,7 @@ contains
    !> Finds the point of the curve at a position of the links. Its tangent has the sense in which the drive grows,
    !> unless the drive is at rest.
    subroutine start_point(curve, position, point, ok)
-      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of the point
+      type(curve_t), intent(inout) :: curve   !< gets the configuration of the point
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from the origin, phi in rad
       type(curve_point_t), intent(out) :: point   !< with a certified step; undefined unless `ok`
       logical, intent(out) :: ok             !< the point was found, and is regular
@@ -190,7 +190,7 @@ contains
 
    !> Finds the point of the curve at a distance from a point along its tangent.
    subroutine step_along(curve, from, step, to, ok)
-      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of `to`
+      type(curve_t), intent(inout) :: curve   !< gets the configuration of `to`
       type(curve_point_t), intent(in) :: from   !< the known point
       real(wp), intent(in) :: step           !< the distance, rad and lengths of the curve
       type(curve_point_t), intent(out) :: to   !< the point that is found; of no use unless `ok`
@@ -224,7 +224,7 @@ contains
    !> Finds whether a position is on the curve within a step from a point, or near the ends of the step. Whole turns of
    !> links do not count.
    subroutine lies_between(curve, from, step, position, to, lies)
-      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of `to`
+      type(curve_t), intent(inout) :: curve   !< gets the configuration of `to`
       type(curve_point_t), intent(in) :: from   !< the point at which the step begins
       real(wp), intent(in) :: step           !< along the tangent of `from`, rad and lengths of the curve
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
@@ -279,7 +279,7 @@ contains
    !> Finds the point near a position at which `border` times the difference from the position is 0. Its tangent has the
    !> sense of `border`.
    subroutine find_point(curve, position, border, point, ok)
-      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of the point
+      type(curve_t), intent(inout) :: curve   !< gets the configuration of the point
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
       real(wp), intent(in) :: border(:)      !< (coordinates) a row of rad and lengths
       type(curve_point_t), intent(out) :: point   !< in lengths of the curve; of no use unless `ok`
@@ -318,9 +318,9 @@ contains
    !>
    !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
    !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
-   !> within 2 e of that place, and one solution is there.
+   !> within 2 e of that place. One solution is there.
    subroutine find_reach(curve, along, point)
-      type(curve_t), intent(inout) :: curve   !< its configuration and factors are those of the point
+      type(curve_t), intent(inout) :: curve   !< with configuration and factors of the point
       real(wp), intent(in) :: along(:, :)    !< (3, links) the tangent of the point
       type(curve_point_t), intent(inout) :: point   !< gets `certified_step` and `room`
       real(wp), allocatable :: y(:, :)

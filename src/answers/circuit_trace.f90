@@ -46,7 +46,7 @@ contains
    !> Follows the circuit of a curve through a point. A circuit that closes begins, and ends, at its first dead point,
    !> if there is one.
    subroutine trace(curve, start, circuit)
-      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_t), intent(inout) :: curve   !< gets another configuration
       type(curve_point_t), intent(in) :: start   !< a regular point of the curve
       type(circuit_t), intent(out) :: circuit   !< with at least one point
       type(circuit_t) :: back
@@ -90,7 +90,7 @@ contains
    !> Follows the curve from a point in the sense of its tangent to an end, or over `max_points`. circuit%ends(2) says
    !> how it ends: end_lost also after a signal.
    subroutine follow(curve, start, circuit)
-      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_t), intent(inout) :: curve   !< gets another configuration
       type(curve_point_t), intent(in) :: start   !< the first point
       type(circuit_t), intent(out) :: circuit   !< from `start` on
       type(curve_point_t) :: a, b, again, change
@@ -200,7 +200,7 @@ contains
    !> Passes the change point ahead of a point. The next point is as far after it as the point is before it: certified
    !> steps shrink in proportion to the distance from a change point.
    subroutine pass_change_point(curve, before, last, change, next, ok)
-      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_t), intent(inout) :: curve   !< gets another configuration
       type(curve_point_t), intent(in) :: before, last   !< the last two points ahead of the change point
       type(curve_point_t), intent(out) :: change, next  !< the change point, and the point after it, if `ok`
       logical, intent(out) :: ok             !< the change point is passed
@@ -230,7 +230,7 @@ contains
    !> lengths before it. The direction of the barrel is free there, and a point of the curve is known to half its
    !> digits. If the parabola cannot be made, the value stays.
    subroutine find_value_at_0(curve, points, at_0)
-      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_t), intent(inout) :: curve   !< gets another configuration
       type(curve_point_t), intent(in) :: points(:)   !< (any number) of the circuit so far
       type(curve_point_t), intent(inout) :: at_0     !< the end of the circuit, near the length 0; gets the value
       type(curve_point_t) :: p
@@ -274,7 +274,7 @@ contains
    !> Finds the point between two neighbours at which one of the numbers of a position has a level, by halving the step
    !> from the first.
    subroutine find_root(curve, from, to, order, level, root, ok)
-      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_t), intent(inout) :: curve   !< gets another configuration
       type(curve_point_t), intent(in) :: from, to   !< the neighbours
       integer, intent(in) :: order           !< which number: of_value, ..., of_cylinder
       real(wp), intent(in) :: level          !< between the numbers of the neighbours, in their unit

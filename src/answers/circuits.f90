@@ -34,7 +34,7 @@ module circuits
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t
       integer :: circuit = 0                   !< number of the circuit
-      integer :: first = 0, last = 0           !< its first and last point on the circuit
+      integer :: first = 0, last = 0           !< first and last point of the branch on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
       integer, allocatable :: assemblies(:)    !< (any number) on it at the first instant, by card ASSEMBLY
@@ -201,7 +201,7 @@ contains
 
    !> Finds the place of a point on the known circuits.
    subroutine locate(found, point, i, k)
-      type(circuits_t), intent(inout) :: found   !< its configuration changes
+      type(circuits_t), intent(inout) :: found   !< gets another configuration
       type(curve_point_t), intent(in) :: point   !< a point of the curve
       integer, intent(out) :: i              !< number of the circuit; 0: the point is on none
       integer, intent(out) :: k              !< the point lies between points `k` and k + 1, or at the only one
@@ -227,8 +227,8 @@ contains
       i = 0
    end subroutine locate
 
-   !> Makes the diagnostic of a dead point. It has the links whose position is singular at a first instant there; no
-   !> links if such an instant is not found.
+   !> Makes the diagnostic of a dead point. The diagnostic has the links whose position is singular at a first instant
+   !> there; no links if such an instant is not found.
    function dead_point(found, held, point, value) result(dead)
       type(circuits_t), intent(in) :: found   !< with its curve and free drive
       type(mechanism_t), intent(in) :: held   !< all drives rest, all links are asked for

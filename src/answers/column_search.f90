@@ -283,8 +283,8 @@ contains
       bounds = max(before%error, middle%error, after%error, bounds)
    end function error_bounds
 
-   !> Finds the differences of the numbers at the ends of a part from the square at its middle, and the coefficients of
-   !> degree 7 and 8. Half of the part is the unit of time. A coefficient that rounding explains is 0.
+   !> Finds how the numbers at the ends of a part differ from the square at its middle, and the coefficients of degree 7
+   !> and 8. Half of the part is the unit of time. A coefficient that rounding explains is 0.
    pure subroutine find_differences(before, middle, after, open, odd, even, seventh, eighth)
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       real(wp), intent(in) :: open           !< bound of the errors of values, in their unit
@@ -314,7 +314,7 @@ contains
       type(extremes_t), intent(inout) :: extremes   !< gets the extremes
       integer, intent(in) :: part            !< number of the mechanism
       type(node_t), intent(in) :: node       !< offers those samples that are known
-      logical, intent(in) :: next            !< its velocities are the next ones along the run
+      logical, intent(in) :: next            !< the velocities of the node are the next ones along the run
       integer :: i, k
 
       do i = 1, size(node%samples)
@@ -517,8 +517,8 @@ contains
          coordinate%places = [coordinate%places, value_at_t(sample%t, sample%f(0))]
    end subroutine offer_sample
 
-   !> Finds the values between which a number of a coordinate is no new extreme for `offer`. If every value may be one,
-   !> or dwells need its place, the first is above the second.
+   !> Finds the values (2) between which a number of a coordinate is no new extreme for `offer`. If every value may be
+   !> one, or dwells need its place, the first is above the second.
    pure function never_better(coordinate, k) result(inside)
       type(coordinate_t), intent(in) :: coordinate   !< with the extremes so far
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2

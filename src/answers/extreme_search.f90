@@ -275,6 +275,7 @@ contains
                end associate
             end do
          end do
+
          if (error < least_error) then
             least_error = error
             best = limits

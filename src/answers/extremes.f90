@@ -50,13 +50,13 @@ module extremes
       integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: in no row
       integer :: part = 0, row = 0                     !< number of its mechanism, and of its row in `track_t`
       logical :: is_angle = .false.                    !< otherwise a length or a ratio
-      logical :: can_coincide = .false.                !< it may be known less well if two points are close
+      logical :: can_coincide = .false.                !< it may be known less well if two points are near
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
-      real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
+      real(wp) :: dwell = 0.0_wp                       !< distance from an extreme in which it dwells; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic value, rate and acceleration
       real(wp) :: drive_rate = 0.0_wp                  !< of a ratio: rate of the drive at t = 0, in the deck's units
       type(extreme_t) :: found(least:greatest, 0:2)    !< the extremes so far, by derivative
-      real(wp) :: last(3) = 0.0_wp                     !< its latest rate, acceleration and jerk with a clear sign
+      real(wp) :: last(3) = 0.0_wp                     !< latest rate, acceleration and jerk with a clear sign
       type(value_at_t), allocatable :: places(:)       !< (any number) nodes and extremes, if it may dwell
       !> Its way: the first sign of its velocity and the latest, 0 for none; its place at the lowest `speed` since the
       !> latest sign, the place before the first sign, and the places at which it has reversed.
@@ -69,7 +69,7 @@ module extremes
    !> An end of a piece of a step.
    type :: piece_end_t
       real(wp) :: t = 0.0_wp                           !< time
-      !> Not all of the motion exists there; it is a change point, otherwise a limit of the motion.
+      !> `is_open`: some of the motion does not exist there. `is_change`: it is a change point, otherwise a limit.
       logical :: is_open = .false., is_change = .false.
    end type piece_end_t
 
@@ -115,7 +115,7 @@ module extremes
       type(uncovered_interval_t), allocatable :: gaps(:)   !< (any number) in which not all is known, in the run's order
       type(uncovered_interval_t), allocatable :: open(:)   !< (any number) in which extremes may be missed
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
-      real(wp) :: way = 1.0_wp                         !< its sign
+      real(wp) :: way = 1.0_wp                         !< the sign of `run`
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
    end type extremes_t
 

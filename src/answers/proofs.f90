@@ -38,7 +38,7 @@ module proofs
       real(wp) :: closure_error = 0.0_wp         !< bound, of redundant equations, in units of the blocks
    end type proofs_t
 
-   !> So many reasons are kept; further ones are only counted.
+   !> At most so many reasons are kept; further ones are only counted.
    integer, parameter :: max_reasons = 50
 
 contains
@@ -55,6 +55,7 @@ contains
       if (.not. allocated(proofs%lines)) allocate (proofs%lines(max(2, set%now%steps + size(set%now%at) + 2)), &
          proofs%reasons(0))
       proofs%instants = proofs%instants + 1
+
       associate (line => proofs%lines(proofs%count + 1))
          do c = 1, set%now%count
             associate (proof => set%now%proofs(c))
@@ -73,6 +74,7 @@ contains
             end associate
          end do
          if (all(holds(set%now%proofs))) proofs%proved = proofs%proved + 1
+
          if (.not. due) return
          line%step = k
          line%bounds = set_bounds(set)

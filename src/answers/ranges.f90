@@ -32,7 +32,7 @@ module ranges
    type :: range_t
       integer :: part = 1                   !< number of its independent mechanism
       integer :: drive = 0                  !< number of the drive in that mechanism
-      logical :: is_all = .false.           !< it turns fully, and the motion closes
+      logical :: is_all = .false.           !< the drive turns fully, and the motion closes
       integer :: turns = 0                  !< turns after which the motion closes
       logical :: is_of_branch = .false.     !< the first instant has no position: of a branch by card CIRCUITS
       integer :: change_points = 0          !< passed on the smooth branch, both ways

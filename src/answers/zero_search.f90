@@ -207,7 +207,7 @@ contains
    end subroutine find_zero
 
    !> Finds the extreme of the acceleration of a column between two times at which the third derivative of its
-   !> polynomial has different signs. It is the extreme of the polynomial through accelerations at five times near it.
+   !> polynomial has different signs: the extreme of another polynomial, through accelerations at five times near it.
    !> If the fourth difference counts, the times are too far apart; if rounding counts, they are too near. If the
    !> extreme is not found or is at an end, turn%known is -1.
    subroutine find_acceleration_extreme(set, column, before, after, turn)

@@ -55,7 +55,7 @@ contains
    pure subroutine assemble_lanes(lanes, i, n, a, residuals, right_side)
       type(lanes_t), intent(inout) :: lanes   !< with values and directions of the unknowns
       integer, intent(in) :: i                        !< the number of the block
-      integer, intent(in) :: n                        !< its unknowns, as many as its rows
+      integer, intent(in) :: n                        !< unknowns of the block, as many as its rows
       real(wp), intent(inout) :: a(lane_count, n*n)        !< the Jacobian, by columns
       real(wp), intent(inout) :: residuals(lane_count, n)  !< (lanes, rows) in rad or the unit of the loop
       real(wp), intent(inout) :: right_side(lane_count, n) !< (lanes, rows) the residuals' unit per unit of time
@@ -72,7 +72,7 @@ contains
    pure subroutine lane_accelerations(lanes, i, n, right_side)
       type(lanes_t), intent(in) :: lanes     !< with the rates of the unknowns
       integer, intent(in) :: i                        !< the number of the block
-      integer, intent(in) :: n                        !< its unknowns, as many as its rows
+      integer, intent(in) :: n                        !< unknowns of the block, as many as its rows
       real(wp), intent(inout) :: right_side(lane_count, n) !< (lanes, rows) rad or unit of the loop, per time squared
       integer :: m
 

@@ -37,7 +37,7 @@ module lane_runs
       type(mechanism_t) :: m                !< the variant
       type(counts_t) :: counts              !< of its instants so far
       type(answers_t) :: asked              !< the answers to its cards
-      type(set_analysis_t) :: s             !< its analysis, which stays behind while a lane has the run
+      type(set_analysis_t) :: s             !< the analysis, which stays behind while a lane has the run
       integer :: at = -1                    !< the number of the last instant solved
       integer :: last = -1                  !< the number of the last instant of the set
       integer :: retry_after = first_patience  !< instants of the ordinary analysis before a lane is tried again
@@ -130,11 +130,11 @@ contains
       end do
    end subroutine run_lanes
 
-   !> Takes the step of a run that its lane has made, unless the ordinary analysis must make the step. This is the case
+   !> Takes the step of a run that its lane has made, unless the ordinary analysis must make the step:
    !>
-   !> - if the lane is refused,
-   !> - at the last instant if others, those of AT, follow it,
-   !> - with EXTREMES also in long steps and at the last instant, of which they take more.
+   !> - the lane is refused;
+   !> - the instant is the last of TIME, and instants of AT follow;
+   !> - with EXTREMES also in long steps and at the last instant of TIME, of which they take more.
    subroutine look_at_step(run, lanes, i, check, t)
       type(lane_run_t), intent(inout) :: run   !< in its lane
       type(lanes_t), intent(inout) :: lanes   !< with the step; get the run's motion again if the analysis solves it
@@ -191,8 +191,8 @@ contains
    end subroutine hand_to_lane
 
    !> Loads a lane with the motions of a run, if lanes can take them. Lanes take one mechanism by METHOD NEWTON whose
-   !> last instant has all of its motion, with three motions at equal steps that need no substeps and no limit that is
-   !> known.
+   !> last instant has all of its motion. Its last three motions have equal steps, which need no substeps, and no limit
+   !> is known.
    subroutine load_run(run, lanes, i, is_done)
       type(lane_run_t), intent(inout) :: run   !< with its analysis at its last instant
       type(lanes_t), intent(inout) :: lanes   !< made, if they are not yet
@@ -266,7 +266,7 @@ contains
 
    !> Gives the analysis of a run the motions of its lane, for the next instants or for times between instants.
    subroutine give_back(run, lanes, i)
-      type(lane_run_t), intent(inout) :: run   !< its analysis gets the motions
+      type(lane_run_t), intent(inout) :: run   !< the analysis of the run gets the motions
       type(lanes_t), intent(in) :: lanes     !< with three motions of the run
       integer, intent(in) :: i               !< the number of the lane
 

@@ -204,7 +204,7 @@ contains
    end subroutine turn
 
    !> Refuses a lane if a pivot is too small compared with the largest, or if the determinant has another sign than
-   !> before: as `block_solver` and the continuation refuse an instant. Adds the block to what is certified of the step.
+   !> before: as `block_solver` and the continuation refuse an instant. Adds the block to the certificate of the step.
    pure subroutine certify_lanes(n, a, exchanged, change, before, next, block, check)
       integer, intent(in) :: n                          !< the number of unknowns of the block
       integer, intent(in) :: before                     !< the slot of the latest motion

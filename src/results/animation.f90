@@ -104,7 +104,7 @@ contains
                size(drawing%outlines(link)%corner, 2) == 0) cycle
             known = [(drawing%frame(frame(k))%known(link), k=1, size(known))]
             if (.not. any(known)) cycle
-            ! It turns about a corner of its own: its origin may be far away.
+            ! The link turns about a corner of its own: its origin may be far away.
             associate (corner => drawing%outlines(link)%corner(:, 1))
                axes%shift = -canvas%scale*corner*[1.0_wp, -1.0_wp]
                last = frame(findloc(known, .true., dim=1))

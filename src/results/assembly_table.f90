@@ -138,7 +138,7 @@ contains
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
-      ! As many digits after the point as a number of the characteristic length has.
+      ! The digits after the point are those of a number of the characteristic length.
       digits = min(drawing_digits, estimate_digits + floor(log10(largest/characteristic_length(m))))
       if (any(is_joint)) digits = drawing_digits
 

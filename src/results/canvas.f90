@@ -34,7 +34,7 @@ module canvas
 
    !> A name with its place.
    type :: label_t
-      character(:), allocatable :: name, attributes   !< its text, and the attributes of the text as SVG
+      character(:), allocatable :: name, attributes   !< the text, and its attributes as SVG
       integer :: link = 0                    !< the link with which it moves; 0: none
       real(wp) :: of(2) = 0.0_wp             !< the pixel of the point or link that it names
       real(wp) :: clear = 0.0_wp             !< pixels: the name stays so far from all other things

@@ -301,6 +301,7 @@ contains
          integer :: point, side, k, j
 
          lies_on = .false.
+
          associate (period => chart%extent/(chart%high - chart%low)*chart%turn, &
                     turns => merge(1, 0, chart%turn > 0.0_wp))
             do point = 1, size(p, 2), 1 + size(p, 2)/seen_points

@@ -273,8 +273,8 @@ contains
       end subroutine add_column
    end function new_table
 
-   !> Names the columns of all drives. If several drive the same coordinate, the second has .2 after its name, and so
-   !> on: ANGLE.CRANK, ANGLE.CRANK.2.
+   !> Names the columns (drives) of all drives. If several drive one coordinate, the second has .2 after its name, and
+   !> so on: ANGLE.CRANK, ANGLE.CRANK.2.
    function drive_columns(set) result(columns)
       class(set_t), intent(in) :: set        !< of the drives
       character(drive_length), allocatable :: columns(:)

@@ -1,5 +1,5 @@
-!> The record of a set for drawings, taken from its motion instant by instant. It has frames, from which picture and
-!> animation take positions, paths of points and centrodes; the range of each slide; and the first flagged instant.
+!> The record of a set for drawings, taken from its motion instant by instant. The record has frames, from which picture
+!> and animation take positions, paths of points and centrodes; the range of each slide; and the first flagged instant.
 !> Places are counted from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
@@ -318,7 +318,7 @@ contains
       end do
    end function outlines_of
 
-   !> Moves places from the axes of a link to the plane.
+   !> Moves places (2, places) from the axes of a link to the plane.
    pure function moved(p, position) result(q)
       real(wp), intent(in) :: p(:, :)        !< (2, places) in the axes of the link
       real(wp), intent(in) :: position(3)    !< of the link: x, y (lengths), phi (rad)

@@ -100,6 +100,7 @@ contains
                end do
             end associate
          end do
+
          used = used + 1
          labels(used)%attributes = 'class="link" style="fill:'//color_of(i)//'"'
          labels(used)%link = i

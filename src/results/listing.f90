@@ -1,5 +1,5 @@
 !> The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
-!> It takes finished data and depends on nothing else: two correct programs print equal bytes.
+!> The listing takes finished data and depends on nothing else: two correct programs print equal bytes.
 !>
 !> Diagnostics in words: three stars before a diagnostic that concerns the results, three dashes before other remarks.
 module listing
@@ -261,7 +261,7 @@ contains
    !> allows; diagnostics; the counts of certificates; the counts of solved and flagged instants.
    subroutine listing_end(o, set, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
       type(output_t), intent(inout) :: o     !< after its last instant
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< after its last instant
       integer, intent(in) :: solved, flagged   !< counts of instants
       type(certificate_counts_t), intent(in) :: certificate_counts   !< of all instants
       real(wp), intent(in) :: closure_error   !< characteristic lengths; below 0: no equation is redundant
@@ -425,8 +425,8 @@ contains
 
    contains
 
-      !> Gives the words before what is said of a change point: CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER,
-      !> and a colon.
+      !> Gives the words before a sentence about a change point: CHANGE POINT AT T = 16.000000 S, LINKS COUPLER,
+      !> ROCKER, and a colon.
       function place() result(text)
          character(:), allocatable :: text
 

@@ -282,8 +282,8 @@ contains
          //trim(canvas%mechanism%time_unit), 'class="arrow"')
    end subroutine draw_velocities
 
-   !> Finds the number of the frame that is drawn in full. It is the first frame, of those in which most links are
-   !> known, that is wide across. Reason: links that are collinear at the first instant are read better later.
+   !> Finds the number of the frame that is drawn in full: the first frame that is wide across, of those in which most
+   !> links are known. Reason: links that are collinear at the first instant are read better later.
    integer function clearest(drawing, list) result(best)
       type(drawing_t), intent(in) :: drawing   !< of the set
       integer, intent(in) :: list(:)         !< (1 or more) numbers of the frames to choose from

@@ -16,7 +16,7 @@ module shapes
       character(:), allocatable :: element      !< of SVG; 'centrode': a polyline that may run to infinity
       character(:), allocatable :: attributes   !< of SVG
       integer :: link = 0                       !< the link with which it moves; 0: the fixed plane
-      logical :: is_below = .false.             !< it is drawn before all links
+      logical :: is_below = .false.             !< the shape is drawn before all links
       logical :: is_faint = .false.             !< a faint position shows its outline
       real(wp), allocatable :: places(:, :), pixels(:, :)   !< (2, places) of a circle its centre
       real(wp) :: radius = 0.0_wp               !< pixels: of a circle; of a box how far it goes beyond its places
@@ -60,8 +60,8 @@ module shapes
 
 contains
 
-   !> Gives the shapes of a drawing in the order in which they are drawn. A joint belongs to that of its links which is
-   !> drawn later.
+   !> Gives the shapes (any number) of a drawing in the order in which they are drawn. A joint belongs to the one of its
+   !> links that is drawn later.
    function shapes_of(drawing, scale) result(list)
       type(drawing_t), intent(in) :: drawing   !< of the set, after its last instant
       real(wp), intent(in) :: scale          !< pixels in a unit of length

@@ -268,7 +268,7 @@ contains
                end do
                if (order > 0) cycle
                strokes = strokes_of(asked%extremes, one)
-               ! It may be small: then the rounding of the difference counts.
+               ! A stroke may be small: then the rounding of the difference counts.
                if (strokes%length%exists) row%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
                   strokes%length%error + stroke_rounding*maxval(abs(one%found(:, 0)%value)))
             end associate
@@ -306,7 +306,7 @@ contains
 
    !> Makes the cell of the value of a drive at a time; an empty one without a drive.
    type(cell_t) function drive_cell(set, number, t) result(cell)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< of the drive
       integer, intent(in) :: number          !< number of the drive in the set; 0: none
       real(wp), intent(in) :: t              !< time, in the deck's unit
       type(drive_t) :: drive

@@ -28,9 +28,9 @@ module rows
    !> A row, and what its printed digits and its further rows need. Errors have the units of the value.
    type, extends(row_t) :: finished_row_t
       integer :: part = 1                    !< the independent mechanism whose digits it has
-      integer :: shown = 0                   !< its form in the listing
-      logical :: listed = .false.            !< it is in the listing,
-      logical :: due = .false.               !< and in the CSV and the table
+      integer :: shown = 0                   !< the form of the row in the listing: row_link, ...
+      logical :: listed = .false.            !< the row is in the listing
+      logical :: due = .false.               !< the row is in the CSV and the table
       logical :: may_lose_digits = .false.          !< some digit may be in doubt: `doubt` is estimated
       real(wp) :: doubt(3, 0:2) = 0.0_wp     !< the rounding error of the value; 0 without an estimate
       real(wp) :: error(3, 0:2) = 0.0_wp     !< the estimated error of the value, if errors are asked for
@@ -91,7 +91,7 @@ contains
    pure subroutine find_digits(row, length, rate, degrees)
       type(finished_row_t), intent(inout) :: row   !< with `doubt`; gets `has_digit`
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
-      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      real(wp), intent(in) :: rate           !< characteristic rate of the mechanism, 1 over the unit of time
       logical, intent(in) :: degrees         !< the deck's unit of angles
       integer :: j
 
@@ -166,8 +166,8 @@ contains
       end do
    end function worst_case
 
-   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time, in the units
-   !> of the row.
+   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row, each by one tolerance, in the units of
+   !> the row.
    pure function root_of_squares(tolerances, changes) result(x)
       type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
       real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors

@@ -204,7 +204,7 @@ contains
    subroutine accept_state(set, t, is_taken)
       type(set_analysis_t), intent(inout) :: set   !< `now` gets the motion
       real(wp), intent(in) :: t              !< time
-      logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
+      logical, intent(out) :: is_taken       !< all numbers are in range, and no digit is in doubt
       logical :: is_finite, may_lose_digits
 
       associate (a => set%list(1), q => set%now%motions(1))
@@ -308,7 +308,7 @@ contains
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
       integer, intent(in) :: effort          !< whether errors are estimated: errors_unasked, ...
-      type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
+      type(row_t), intent(inout) :: rows(size(list))   !< `known` of each is -1 without a motion
       real(wp), intent(out) :: error(3, 0:2, size(list))   !< in the deck's units and rad; 0 if nothing is estimated
       real(wp), intent(out) :: amplification   !< the factor by which roundings grow; 0 if nothing is estimated
       type(motion_t) :: q
@@ -322,6 +322,7 @@ contains
       end if
       error = 0.0_wp
       amplification = 0.0_wp
+
       associate (c => set%now%rows(list(1))%part)
          if (abs(t - set%now%motions(c)%t) > 0.0_wp) then
             q = new_motion(size(set%now%parts(c)%links))

@@ -73,7 +73,7 @@ module study
    !> Degrees in a radian.
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
-   !> Seconds that the reference of a set may take. What it has written until then is compared.
+   !> Seconds that the reference of a set may take. Rows that it has written until then are compared.
    integer, parameter :: max_wait = 60
    !> Cards that do not change a row of a link, point or pair, or that a study replaces.
    character(*), parameter :: left_out = 'METHOD|VARY|TOLER|EXTREMES|RANGE|CIRCUITS|ASSEMBLY|PROVE'
@@ -261,11 +261,13 @@ contains
       real(dp) :: begun, largest(last_dimension, 0:2), difference(last_dimension, 0:2)
       integer :: k, i, at_first
 
-      ! Of what is zero but for rounding, as the acceleration of a link that turns evenly, the unit is characteristic.
+      ! Errors of numbers that are zero but for rounding, as the acceleration of a link that turns evenly, are in parts
+      ! of a characteristic size.
       associate (length => characteristic_length(m), rate => characteristic_rate(m, characteristic_length(m)))
          largest = reshape([((real(usual_size(i, k, length, rate, m%degrees), dp), i=1, last_dimension), k=0, 2)], &
             [last_dimension, 3])
       end associate
+
       difference = -1.0_dp
       trial%seconds = 0.0_dp
       call make_set_analysis(m, a)
@@ -285,7 +287,7 @@ contains
 
    contains
 
-      !> Records, of each dimension, the largest values of the rows of instant `k` and their largest differences from
+      !> Records the largest values of the rows of instant `k`, of each dimension, and their largest differences from
       !> the truth.
       subroutine compare()
          type(finished_row_t), allocatable :: rows(:)
@@ -391,8 +393,8 @@ contains
       median = 0.5_dp*(minval(values, mask=twice >= size(values)) + minval(values, mask=twice > size(values)))
    end function median
 
-   !> Lets kinmat-quad solve one set of a deck, and opens its table. There is no table if kinmat-quad stands neither
-   !> in the directory of this program nor in PATH, or if it computes in another kind of reals.
+   !> Lets kinmat-quad solve one set of a deck, and opens its table. There is no table without a kinmat-quad in the
+   !> directory of this program or in PATH, or if that computes in another kind of reals.
    subroutine open_reference(path, set, unit)
       character(*), intent(in) :: path       !< the file of the deck
       character(*), intent(in) :: set        !< K/N: set K of N sets
