@@ -4,7 +4,8 @@
 !> part undone, and no part after that is written.
 !>
 !> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
-!> each part that is computed: who waits for a part waits for its lock, which the system opens as well if its process dies.
+!> each part that is computed: a process that waits for a part waits for its lock. The system opens the lock as well if
+!> the process of the part dies.
 !>
 !> Rejected: a pipe from process to process. A part then belongs to a process before it begins, so that unequal parts
 !> leave one idle.
