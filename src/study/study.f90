@@ -30,8 +30,8 @@ module study
    !> Measurements of a time, of which the median, the least and the greatest are printed.
    integer, parameter :: repeats = 9
 
-   !> One trial: a way to solve a set, and its results.
-   type :: trial_t
+   !> One benchmark: a way to solve a set, and its results.
+   type :: benchmark_t
       integer :: method = method_newton          !< method_newton, method_dense or method_matrix
       real(dp) :: tolerance = 0.0_dp             !< 0: the limit of rounding
       integer :: predictor = own_predictor       !< order of the predictor, or the method's own
@@ -41,16 +41,16 @@ module study
       real(dp) :: time(repeats) = 0.0_dp         !< of a step without the first instant, microseconds
       !> Of positions, velocities, accelerations, in parts of the largest; below 0: no number was compared.
       real(dp) :: error(0:2) = 0.0_dp
-   end type trial_t
+   end type benchmark_t
 
    !> The numbers with which the rows of a set are compared.
-   type :: truth_t
-      logical :: is_reference = .false.          !< kinmat-quad's table; otherwise the estimates of errors
+   type :: reference_t
+      logical :: is_from_quad = .false.          !< kinmat-quad's table; otherwise the estimates of errors
       integer :: compared = 0                    !< instants
       logical, allocatable :: due(:)             !< (1 + instants) rows are printed there
       type(table_t) :: table                     !< the columns that are compared
       real(qp), allocatable :: value(:, :)       !< (columns, 0:compared - 1) angles as the deck has them
-   end type truth_t
+   end type reference_t
 
    !> One measurement takes at least so many seconds: many ticks of the clock.
    real(dp), parameter :: min_seconds = 0.0005_dp
@@ -58,9 +58,9 @@ module study
    real(dp), parameter :: max_seconds = 0.01_dp
    !> Steps of a measurement at least, if the motion has so many.
    integer, parameter :: min_steps = 4
-   !> A trial ends early if it misses instants and has taken so many seconds: its time is not printed.
+   !> A benchmark ends early if it misses instants and has taken so many seconds: its time is not printed.
    real(dp), parameter :: max_seconds_missed = 2.0_dp
-   !> A study solves this number of links at instants in each trial.
+   !> A study solves this number of links at instants in each benchmark.
    integer, parameter :: max_solved = 1000000
    !> A study compares this number of numbers.
    integer, parameter :: max_compared = 1000000
@@ -127,8 +127,8 @@ contains
       !> becomes status_flagged, and no time is printed.
       subroutine write_times(m)
          type(mechanism_t), intent(in) :: m
-         type(trial_t) :: t
-         type(truth_t) :: nothing
+         type(benchmark_t) :: t
+         type(reference_t) :: nothing
          character(80) :: line
          integer :: k, last
 
@@ -148,7 +148,7 @@ contains
       end subroutine write_times
    end subroutine run_study
 
-   !> Prints the study of a set: a row for each trial. A set of one instant gets a line that says so.
+   !> Prints the study of a set: a row for each benchmark. A set of one instant gets a line that says so.
    subroutine study_set(o, path, m, sets, redundant)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: path       !< the file of the deck
@@ -156,9 +156,9 @@ contains
       integer, intent(in) :: sets            !< how many sets the deck has
       logical, intent(in) :: redundant       !< the set has redundant equations
       integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
-      type(trial_t), allocatable :: trials(:)
+      type(benchmark_t), allocatable :: benchmarks(:)
       type(mechanism_t), allocatable :: tried(:)
-      type(truth_t) :: truth
+      type(reference_t) :: reference
       integer :: i, k, last, standard, equations
 
       if (m%set_number > 1) call put(o, '')
@@ -171,31 +171,31 @@ contains
       ! Each method with each tolerance, then the predictors of METHOD NEWTON. The first one without a tolerance is
       ! the default.
       equations = 3*count(.not. m%links%ground)
-      trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
+      benchmarks = [((benchmark_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
          i=1, merge(size(methods), 1, .not. redundant .and. equations <= max_equations)), &
-         (trial_t(predictor=k), k=0, 3)]
-      allocate (tried(size(trials)))
-      call read_truth(m, last, path, sets, truth)
-      do i = 1, size(trials)
-         ! The mechanism as the trial solves it: of the deck's requests only its rows.
+         (benchmark_t(predictor=k), k=0, 3)]
+      allocate (tried(size(benchmarks)))
+      call read_reference(m, last, path, sets, reference)
+      do i = 1, size(benchmarks)
+         ! The mechanism as the benchmark solves it: of the deck's requests only its rows.
          tried(i) = m
-         tried(i)%method = trials(i)%method
-         tried(i)%tolerance = real(trials(i)%tolerance, wp)
-         tried(i)%predictor = trials(i)%predictor
+         tried(i)%method = benchmarks(i)%method
+         tried(i)%tolerance = real(benchmarks(i)%tolerance, wp)
+         tried(i)%predictor = benchmarks(i)%predictor
          tried(i)%assemblies = .false.
-         call solve(tried(i), last, trials(i), truth)
+         call solve(tried(i), last, benchmarks(i), reference)
       end do
-      ! All trials take turns, so that other work of the machine meets all of them.
+      ! All benchmarks take turns, so that other work of the machine meets all of them.
       do k = 1, repeats
-         do i = 1, size(trials)
-            if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
+         do i = 1, size(benchmarks)
+            if (benchmarks(i)%missed == 0) benchmarks(i)%time(k) = step_time(tried(i), last, benchmarks(i)%seconds)
          end do
       end do
 
       call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, ' &
          //whole(count(.not. m%links%hidden))//' LINKS, '//wp_name)
-      associate (instants => whole(count(truth%due(:truth%compared)))//' OF '//whole(last + 1)//' INSTANTS')
-         if (truth%is_reference) then
+      associate (instants => whole(count(reference%due(:reference%compared)))//' OF '//whole(last + 1)//' INSTANTS')
+         if (reference%is_from_quad) then
             call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//instants)
          else
             call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//instants &
@@ -213,50 +213,50 @@ contains
       call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION' &
          //'   VELOCITY   ACCELER.')
 
-      standard = findloc(trials%tolerance, 0.0_dp, dim=1)
-      do i = 1, size(trials)
-         call write_trial(o, trials(i), median(trials(standard)%time))
+      standard = findloc(benchmarks%tolerance, 0.0_dp, dim=1)
+      do i = 1, size(benchmarks)
+         call write_benchmark(o, benchmarks(i), median(benchmarks(standard)%time))
       end do
    end subroutine study_set
 
-   !> Prints the row of a trial: times and iterations, or how many instants are missed; errors, or UNKNOWN.
-   subroutine write_trial(o, trial, unit)
+   !> Prints the row of a benchmark: times and iterations, or how many instants are missed; errors, or UNKNOWN.
+   subroutine write_benchmark(o, benchmark, unit)
       type(output_t), intent(inout) :: o
-      type(trial_t), intent(in) :: trial     !< solved and measured
+      type(benchmark_t), intent(in) :: benchmark     !< solved and measured
       real(dp), intent(in) :: unit           !< microseconds of a step by default; 0: the default misses a position
       character(120) :: line
       integer :: d
 
-      line = ' '//method_words(trial%method)
+      line = ' '//method_words(benchmark%method)
       line(10:) = 'OWN'
-      if (trial%predictor /= own_predictor) line(10:) = 'ORDER '//whole(trial%predictor)
+      if (benchmark%predictor /= own_predictor) line(10:) = 'ORDER '//whole(benchmark%predictor)
       line(21:) = 'ROUNDING'
-      if (trial%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') trial%tolerance
-      if (trial%missed > 0) then
-         line(32:) = 'NOT SOLVED AT '//whole(trial%missed)//' INSTANTS OR MORE'
+      if (benchmark%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') benchmark%tolerance
+      if (benchmark%missed > 0) then
+         line(32:) = 'NOT SOLVED AT '//whole(benchmark%missed)//' INSTANTS OR MORE'
       else
-         write (line(30:), '(3f10.3)') median(trial%time), minval(trial%time), maxval(trial%time)
-         if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(trial%time)/unit
-         write (line(68:), '(f7.2)') trial%iterations
+         write (line(30:), '(3f10.3)') median(benchmark%time), minval(benchmark%time), maxval(benchmark%time)
+         if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(benchmark%time)/unit
+         write (line(68:), '(f7.2)') benchmark%iterations
       end if
 
-      do d = 0, merge(2, -1, trial%missed == 0)
-         if (trial%error(d) >= 0.0_dp .and. trial%error(d) < 1.0e-3_dp*nothing_known) then
-            write (line(75 + 11*d:), '(es11.1)') trial%error(d)
+      do d = 0, merge(2, -1, benchmark%missed == 0)
+         if (benchmark%error(d) >= 0.0_dp .and. benchmark%error(d) < 1.0e-3_dp*nothing_known) then
+            write (line(75 + 11*d:), '(es11.1)') benchmark%error(d)
          else
             line(75 + 11*d:) = '    UNKNOWN'
          end if
       end do
       call put(o, trim(line))
-   end subroutine write_trial
+   end subroutine write_benchmark
 
-   !> Solves a set by one trial, and finds its missed instants, iterations and seconds. If the truth has numbers, the
-   !> errors of the trial are found as well.
-   subroutine solve(m, last, trial, truth)
+   !> Solves a set as a benchmark has it, and finds missed instants, iterations and seconds. If the reference has
+   !> numbers, the errors of the benchmark are found as well.
+   subroutine solve(m, last, benchmark, reference)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: last            !< the number of the last instant, counted from 0
-      type(trial_t), intent(inout) :: trial   !< gets the results
-      type(truth_t), intent(in) :: truth     !< of the set; a new one compares nothing
+      type(benchmark_t), intent(inout) :: benchmark   !< gets the results
+      type(reference_t), intent(in) :: reference     !< of the set; a new one compares nothing
       type(set_analysis_t) :: a
       real(dp) :: begun, largest(last_dimension, 0:2), difference(last_dimension, 0:2)
       integer :: k, i, at_first
@@ -269,40 +269,40 @@ contains
       end associate
 
       difference = -1.0_dp
-      trial%seconds = 0.0_dp
+      benchmark%seconds = 0.0_dp
       call make_set_analysis(m, a)
       do k = 0, last
          begun = seconds()
          call advance_set(a, instant(m, k))
-         trial%seconds = trial%seconds + (seconds() - begun)
+         benchmark%seconds = benchmark%seconds + (seconds() - begun)
          if (k == 0) at_first = maxval(a%list%iterations)
-         if (is_flagged(a%now)) trial%missed = trial%missed + 1
-         if (k < truth%compared) call compare()
-         if (trial%missed > 0 .and. trial%seconds > max_seconds_missed) exit
+         if (is_flagged(a%now)) benchmark%missed = benchmark%missed + 1
+         if (k < reference%compared) call compare()
+         if (benchmark%missed > 0 .and. benchmark%seconds > max_seconds_missed) exit
       end do
-      trial%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
+      benchmark%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
-         trial%error(k) = maxval(difference(:, k)/largest(:, k))
+         benchmark%error(k) = maxval(difference(:, k)/largest(:, k))
       end do
 
    contains
 
       !> Records the largest values of the rows of instant `k`, of each dimension, and their largest differences from
-      !> the truth.
+      !> the reference.
       subroutine compare()
          type(finished_row_t), allocatable :: rows(:)
          real(qp) :: off
          integer :: i, kind
 
-         if (.not. truth%due(1 + k)) return
-         if (.not. truth%is_reference) call sample_set(a, .true.)
+         if (.not. reference%due(1 + k)) return
+         if (.not. reference%is_from_quad) call sample_set(a, .true.)
          call find_rows(a%now, a%assemblies, k, .true., rows)
-         do i = 1, size(truth%table%columns)
-            associate (c => truth%table%columns(i), row => rows(truth%table%columns(i)%request))
+         do i = 1, size(reference%table%columns)
+            associate (c => reference%table%columns(i), row => rows(reference%table%columns(i)%request))
                if (cell_of(c%row_column_t, row%known, row%state) /= cell_number) cycle
-               if (truth%is_reference) then
+               if (reference%is_from_quad) then
                   off = abs(row%value(c%at(1), c%at(2)) &
-                     - truth%value(i, k)/merge(radian, 1.0_qp, c%dimension == of_angle .and. m%degrees))
+                     - reference%value(i, k)/merge(radian, 1.0_qp, c%dimension == of_angle .and. m%degrees))
                   ! The reference has no number there.
                   if (.not. off <= huge(1.0_dp)) cycle
                else
@@ -317,13 +317,13 @@ contains
    end subroutine solve
 
    !> Reads the table of kinmat-quad for the rows of links, points and pairs of a set, as far as the table goes. Without
-   !> such a table the program's own estimates of errors stand for the truth.
-   subroutine read_truth(m, last, path, sets, truth)
+   !> such a table the program's own estimates of errors stand for the reference.
+   subroutine read_reference(m, last, path, sets, reference)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: last            !< the number of the last instant, counted from 0
       integer, intent(in) :: sets            !< how many sets the deck has
       character(*), intent(in) :: path       !< the file of the deck
-      type(truth_t), intent(out) :: truth    !< gets columns, instants and, of a table, values
+      type(reference_t), intent(out) :: reference    !< gets columns, instants and, of a table, values
       type(structure_report_t) :: structure_report
       type(set_motion_t) :: s
       type(request_t), allocatable :: requests(:)
@@ -333,21 +333,21 @@ contains
       structure_report = find_structure(m)
       call new_set_motion(m, s, structure_report)
       requests = [(request_of(s, i), i=1, size(s%rows))]
-      truth%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
-      truth%table = new_table(s, .false.)
-      truth%compared = min(last + 1, max(1, max_compared/max(1, size(truth%table%columns))))
+      reference%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
+      reference%table = new_table(s, .false.)
+      reference%compared = min(last + 1, max(1, max_compared/max(1, size(reference%table%columns))))
       call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
       if (unit == 0) return
-      allocate (truth%value(size(truth%table%columns), 0:truth%compared - 1))
+      allocate (reference%value(size(reference%table%columns), 0:reference%compared - 1))
       read (unit, '()', iostat=status)
-      do k = 0, truth%compared - 1
-         read (unit, *, iostat=status) before, truth%value(:, k)
+      do k = 0, reference%compared - 1
+         read (unit, *, iostat=status) before, reference%value(:, k)
          if (status /= 0) exit
-         truth%is_reference = .true.
+         reference%is_from_quad = .true.
       end do
-      if (truth%is_reference) truth%compared = k
+      if (reference%is_from_quad) reference%compared = k
       close (unit)
-   end subroutine read_truth
+   end subroutine read_reference
 
    !> Measures the microseconds of a step, with position, velocity and acceleration, without the first instant.
    real(dp) function step_time(m, last, whole_time) result(time)
