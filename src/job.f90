@@ -68,7 +68,7 @@ contains
             status_rejected, 'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
       end if
       if (.not. allocated(failure)) call check_structure(sets, structure_report, failure)
-      if (allocated(failure) .and. len(message) == 0) message = said()//' *** '//failure%text
+      if (allocated(failure) .and. len(message) == 0) message = remarks_text()//' *** '//failure%text
       if (.not. allocated(failure)) call open_outputs(options, o%first, o%last, count_sets, o, failure)
 
       if (.not. allocated(failure)) then
@@ -89,7 +89,7 @@ contains
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
       else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. o%share%is_child)) then
-         message = said()
+         message = remarks_text()
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
@@ -104,7 +104,7 @@ contains
    contains
 
       !> Gives the remarks about `sets`, each line ended by new_line('a'); '' for --quiet.
-      function said() result(text)
+      function remarks_text() result(text)
          character(:), allocatable :: text
          integer :: k
 
@@ -116,7 +116,7 @@ contains
                text = text//' --- '//remark_text(sets(i), sets(i)%remarks(k))//new_line('a')
             end do
          end do
-      end function said
+      end function remarks_text
    end subroutine run_job
 
    !> Checks the options against the sets of the deck. Errors: status_rejected. A deck with VARY cards has no table,

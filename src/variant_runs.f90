@@ -91,7 +91,7 @@ contains
             count = min(lane_count, last - n + 1)
             do k = 1, count
                rows(k) = new_row(summary, variation, n + k - 1)
-               call start(variation, runs(k), rows(k))
+               call prepare_variant(variation, runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
 
@@ -142,7 +142,7 @@ contains
    end subroutine run_variants
 
    !> Makes the variant of a row ready for the lanes. A variant that is rejected is over, and its row has the reason.
-   subroutine start(variation, run, row)
+   subroutine prepare_variant(variation, run, row)
       type(variation_t), intent(inout) :: variation   !< of the set
       type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
       type(variant_row_t), intent(inout) :: row   !< with its number; gets the reason if the variant is rejected
@@ -161,7 +161,7 @@ contains
          call analyze_set(run%m, structure_report, run%s)
       end if
       call begin_run(run)
-   end subroutine start
+   end subroutine prepare_variant
 
    !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
    subroutine check_variant(variant, structure_report, row)

@@ -6,7 +6,7 @@
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
 !> singular only at change points. K and D of `uniqueness_radius`, taken from B, bound how fast B^-1 B changes in any
-!> direction and along t. By them `find_reach` finds how long a step cannot jump to another circuit.
+!> direction and along t. By them `find_certified_step` finds how long a step cannot jump to another circuit.
 module circuit_curve
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -33,7 +33,8 @@ module circuit_curve
    !> shrinks is rounding below the second (rad and lengths).
    real(wp), parameter :: rounding_correction = 16.0_wp*epsilon(1.0_wp), stalled_correction = sqrt(epsilon(1.0_wp))
 
-   !> The bound of `find_reach`, less than 1/2, since K of slides is taken at the start of a step, and they grow.
+   !> The bound of `find_certified_step`, less than 1/2, since K of slides is taken at the start of a step, and slides
+   !> grow.
    real(wp), parameter :: certified_bound = 0.25_wp
    !> The longest step, in rad and lengths, and in parts of a longer slide: a curve of such pieces looks smooth.
    real(wp), parameter :: max_step = 0.1_wp
@@ -311,7 +312,7 @@ contains
       point%value(of_bend) = point%value(of_bend) + dot_product(row, point%bend)
       point%value(of_size) = maxval(abs(point%q(:2, :)))
       if (size(curve%cylinders) > 0) point%value(of_cylinder) = shortest(curve, point%q)
-      call find_reach(curve, along, point)
+      call find_certified_step(curve, along, point)
    end subroutine find_point
 
    !> Finds the longest certified step at a point, and the room about it, both in rad and lengths of the curve.
@@ -319,7 +320,7 @@ contains
    !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
    !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
    !> within 2 e of that place. One solution is there.
-   subroutine find_reach(curve, along, point)
+   subroutine find_certified_step(curve, along, point)
       type(curve_t), intent(inout) :: curve   !< with configuration and factors of the point
       real(wp), intent(in) :: along(:, :)    !< (3, links) the tangent of the point
       type(curve_point_t), intent(inout) :: point   !< gets `certified_step` and `room`
@@ -339,5 +340,5 @@ contains
       ! The sum of powers(i) h^i is 1 at most.
       point%certified_step = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
       point%room = 1.0_wp/max(speed/max_step, speed*k/certified_bound, least)
-   end subroutine find_reach
+   end subroutine find_certified_step
 end module circuit_curve

@@ -92,13 +92,13 @@ contains
 
       associate (track => extremes%tracks(part))
          call find_node(set, track, t, effort, track%nodes(track%filled + 1))
-         if (track%filled == 2) call look_for_extreme(track)
+         if (track%filled == 2) call check_for_extreme(track)
       end associate
    end subroutine find_next
 
    !> Finds whether a number may have an extreme between the first and the third node of a mechanism: a rate, an
    !> acceleration or a jerk changes its sign there or since its last clear sign, or an acceleration is not simple.
-   subroutine look_for_extreme(track)
+   subroutine check_for_extreme(track)
       type(track_t), intent(inout) :: track   !< with three nodes; gets `turns`
       real(wp) :: jerk(2), noise(3), f(3), low, high
       integer :: i, k
@@ -146,7 +146,7 @@ contains
             last = values(n)
          end do
       end subroutine compare
-   end subroutine look_for_extreme
+   end subroutine check_for_extreme
 
    !> Tells whether the parts between three nodes are equally long, and are searched together.
    pure logical function is_pair(track, before, middle, after)
@@ -425,7 +425,7 @@ contains
       type(node_t), intent(in) :: before, middle, after   !< the two nodes, and one between
       real(wp), intent(in) :: noise(:)       !< (coordinates) bounds of the rounding errors of third derivatives
       logical, intent(in) :: has_kink(:)     !< (coordinates) only a length is searched, which turns where it is 0
-      type(sample_t), allocatable :: path(:), known(:)
+      type(sample_t), allocatable :: path(:), old_path(:)
       type(sample_t) :: found
       type(column_t) :: column
       real(wp) :: smooth(2), jerk(2)
@@ -468,14 +468,14 @@ contains
             end if
 
             do order = merge(1, 2, has_kink(i)), 1, -1
-               known = path
+               old_path = path
                last = 0
-               do k = 1, size(known)
+               do k = 1, size(old_path)
                   ! A derivative that is no more than rounding has no known sign.
-                  if (abs(known(k)%f(order)) <= column%noise(order)) cycle
+                  if (abs(old_path(k)%f(order)) <= column%noise(order)) cycle
                   if (last > 0) then
-                     if (differ_in_sign(known(last)%f(order), known(k)%f(order))) then
-                        call find_zero(set, column, order, 0.0_wp, known(last), known(k), found)
+                     if (differ_in_sign(old_path(last)%f(order), old_path(k)%f(order))) then
+                        call find_zero(set, column, order, 0.0_wp, old_path(last), old_path(k), found)
                         call accept_extreme(order - 1)
                      end if
                   end if

@@ -110,7 +110,7 @@ contains
          if (k == set%now%steps) call search_waiting(extremes, set, part)
          if (k == set%now%steps) then
             track%closure = apart_from(set%now, part, set%now%first(part))
-            call settle_ratios(track%coordinates)
+            call convert_ratio_extremes(track%coordinates)
          end if
          if (.not. known) call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
          track%last = piece_end_t(t, .not. known, q%singularity == singular_change)
@@ -293,7 +293,7 @@ contains
    end subroutine accept_limits
 
    !> Converts the extremes of the rates of ratios to extremes of the derivatives of the ratios by the drive.
-   pure subroutine settle_ratios(coordinates)
+   pure subroutine convert_ratio_extremes(coordinates)
       type(coordinate_t), intent(inout) :: coordinates(:)   !< (any number) after the last instant
       integer :: i
 
@@ -306,5 +306,5 @@ contains
             if (rate < 0.0_wp) c%found(:, 2) = c%found([greatest, least], 2)
          end associate
       end do
-   end subroutine settle_ratios
+   end subroutine convert_ratio_extremes
 end module extreme_search

@@ -217,7 +217,7 @@ contains
       type(sample_t), intent(out) :: turn    !< at the time of the extreme
       type(sample_t) :: at
       real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run
-      real(wp) :: place, bend, best_step, best_noise, width, value
+      real(wp) :: best_t, bend, best_step, best_noise, width, value
       integer :: i, k
 
       associate (length => after%t - before%t)
@@ -240,7 +240,7 @@ contains
          run = max(abs(set%now%t0), abs(set%now%t1))
          step = sign(column%step, length)
          ! The extreme of the best stencil so far: none.
-         place = first
+         best_t = first
          bend = 0.0_wp
          best_step = 1.0_wp
          best_noise = 0.0_wp
@@ -275,7 +275,7 @@ contains
                if (bend > 0.0_wp) exit
                step = stencil_factor*step
             else if (abs(u) <= 2.0_wp) then
-               place = t
+               best_t = t
                bend = abs(d(2))/step**2
                best_step = abs(step)
                best_noise = noise/abs(step)
@@ -290,13 +290,13 @@ contains
          ! error; within a step they are one, at the end.
          if (.not. bend > 0.0_wp .and. maxval([before%f(2), after%f(2)]*sign(1.0_wp, -on_curve(column, 4, first))) &
             >= value*sign(1.0_wp, -on_curve(column, 4, first))) return
-         if (min(abs(place - before%t), abs(after%t - place)) <= end_part*abs(length)) then
-            left = abs(place - first)
+         if (min(abs(best_t - before%t), abs(after%t - best_t)) <= end_part*abs(length)) then
+            left = abs(best_t - first)
             if (left <= best_step) return
-            place = first
+            best_t = first
             width = max(width, left)
          end if
-         call finish_zero(set, column, 2, [before%t, after%t], place, bend, best_step, best_noise, width, turn)
+         call finish_zero(set, column, 2, [before%t, after%t], best_t, bend, best_step, best_noise, width, turn)
       end associate
    end subroutine find_acceleration_extreme
 

@@ -25,7 +25,7 @@ module lane_runs
 
    !> Instants that the ordinary analysis solves after a lane is refused for the first time: a prediction takes three.
    !> Each further time they are twice as many.
-   integer, parameter :: first_patience = 3
+   integer, parameter :: first_retry_interval = 3
    !> Steps of one set differ by this part at most: the bounds of the drives are asked for a step that is so much
    !> longer.
    real(wp), parameter :: step_margin = 1.0e-6_wp
@@ -40,7 +40,7 @@ module lane_runs
       type(set_analysis_t) :: s             !< the analysis, which stays behind while a lane has the run
       integer :: at = -1                    !< the number of the last instant solved
       integer :: last = -1                  !< the number of the last instant of the set
-      integer :: retry_after = first_patience  !< instants of the ordinary analysis before a lane is tried again
+      integer :: retry_after = first_retry_interval  !< instants of the ordinary analysis before a lane is tried again
       logical :: in_simd_lane = .false.     !< a lane has the run
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
@@ -54,7 +54,7 @@ contains
       call new_answers(run%s, .false., run%asked)
       run%at = -1
       run%last = instant_count(run%m) - 1
-      run%retry_after = first_patience
+      run%retry_after = first_retry_interval
       run%is_over = .false.
       run%in_simd_lane = .false.
       run%counts = counts_t()
@@ -66,7 +66,7 @@ contains
       type(lane_run_t), intent(inout) :: runs(:)   !< at most as many as there are lanes; run i has lane i
       type(lanes_t), intent(inout) :: lanes   !< made for the first run that they take
       type(step_check_t) :: check
-      real(wp), dimension(lane_count) :: t, t0, span, at, all_steps, goes_on
+      real(wp), dimension(lane_count) :: t, t0, span, at, all_steps, active
       integer :: i, k, steps
       logical :: in_simd_lane, searches
 
@@ -91,7 +91,7 @@ contains
          span = 0.0_wp
          at = 0.0_wp
          all_steps = 1.0_wp
-         goes_on = 0.0_wp
+         active = 0.0_wp
          do i = 1, size(runs)
             if (.not. runs(i)%in_simd_lane) cycle
             associate (m => runs(i)%m)
@@ -99,7 +99,7 @@ contains
                span(i) = m%t1 - m%t0
                at(i) = real(runs(i)%at, wp)
                all_steps(i) = real(m%steps, wp)
-               goes_on(i) = 1.0_wp
+               active(i) = 1.0_wp
                steps = min(steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%wants_extremes))
             end associate
          end do
@@ -107,13 +107,13 @@ contains
          do k = 1, steps
             t = t0 + span*(at + k)/all_steps
             call solve_lanes(lanes, t, check)
-            if (k == steps .or. dot_product(check%refused, goes_on) > 0.5_wp .or. signal_received() > 0) exit
+            if (k == steps .or. dot_product(check%refused, active) > 0.5_wp .or. signal_received() > 0) exit
             call accept_lanes(lanes, t)
          end do
          do i = 1, size(runs)
             if (.not. runs(i)%in_simd_lane) cycle
             call count_instants(runs(i), k - 1)
-            call look_at_step(runs(i), lanes, i, check, t(i))
+            call accept_step(runs(i), lanes, i, check, t(i))
          end do
          call accept_lanes(lanes, t)
 
@@ -121,7 +121,7 @@ contains
             associate (r => runs(i), x => runs(i)%asked%extremes)
                if (r%in_simd_lane .and. r%asked%wants_extremes) then
                   searches = is_searched(x, r%s, 1)
-                  if (searches) call give_back(r, lanes, i)
+                  if (searches) call return_to_analysis(r, lanes, i)
                   call search_instant(x, r%s, 1, r%at, searches)
                end if
             end associate
@@ -135,7 +135,7 @@ contains
    !> - the lane is refused;
    !> - the instant is the last of TIME, and instants of AT follow;
    !> - with EXTREMES also in long steps and at the last instant of TIME, of which they take more.
-   subroutine look_at_step(run, lanes, i, check, t)
+   subroutine accept_step(run, lanes, i, check, t)
       type(lane_run_t), intent(inout) :: run   !< in its lane
       type(lanes_t), intent(inout) :: lanes   !< with the step; get the run's motion again if the analysis solves it
       integer, intent(in) :: i               !< the number of the lane
@@ -148,7 +148,7 @@ contains
       counts = .not. is_refused
       if (run%asked%wants_extremes) then
          counts = counts .and. check%correction(i) <= fine_prediction .and. run%at + 1 < run%m%steps
-         if (counts) call watch_lane(run, lanes, i, t, counts)
+         if (counts) call update_extremes(run, lanes, i, t, counts)
       else if (run%at + 1 == run%m%steps) then
          counts = counts .and. run%at + 1 == run%last
       end if
@@ -157,12 +157,12 @@ contains
          return
       end if
 
-      call give_back(run, lanes, i)
+      call return_to_analysis(run, lanes, i)
       run%in_simd_lane = .false.
       call advance_run(run, run%at + merge(run%retry_after, 1, is_refused))
       call keep_lane(lanes, i)
       t = lanes%t(i, lanes%slot(0))
-   end subroutine look_at_step
+   end subroutine accept_step
 
    !> Counts instants of a run that are solved and regular.
    pure subroutine count_instants(run, n)
@@ -237,7 +237,7 @@ contains
 
    !> Gives the EXTREMES of a run the motion that its lane has found. They do not take the motion if a number is out of
    !> range or a digit is in doubt.
-   subroutine watch_lane(run, lanes, i, t, is_done)
+   subroutine update_extremes(run, lanes, i, t, is_done)
       type(lane_run_t), intent(inout) :: run   !< in its lane; its analysis gets the state
       type(lanes_t), intent(in) :: lanes     !< with the motion
       integer, intent(in) :: i               !< the number of the lane
@@ -262,10 +262,10 @@ contains
       end associate
       call accept_state(run%s, t, is_done)
       if (is_done) call find_next(run%asked%extremes, run%s, 1, t, errors_in_doubt)
-   end subroutine watch_lane
+   end subroutine update_extremes
 
    !> Gives the analysis of a run the motions of its lane, for the next instants or for times between instants.
-   subroutine give_back(run, lanes, i)
+   subroutine return_to_analysis(run, lanes, i)
       type(lane_run_t), intent(inout) :: run   !< the analysis of the run gets the motions
       type(lanes_t), intent(in) :: lanes     !< with three motions of the run
       integer, intent(in) :: i               !< the number of the lane
@@ -276,5 +276,5 @@ contains
          run%s%is_in_lane = .false.
          a%t = a%history%t(0)
       end associate
-   end subroutine give_back
+   end subroutine return_to_analysis
 end module lane_runs

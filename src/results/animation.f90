@@ -44,7 +44,7 @@ contains
 
       if (drawing%films == 0) return
       call make_canvas(page, drawing, drawing%frame(1), [(i, i=1, drawing%films)], canvas)
-      call find_course()
+      call find_keys()
       canvas%snapshot = drawing%now
       list = shapes_of(drawing, canvas%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
@@ -72,7 +72,7 @@ contains
 
       !> Finds the frames that are shown, at equal steps, and whether places between them are interpolated: no link
       !> turns too far. The motion is not shown backwards: drives do not run so.
-      subroutine find_course()
+      subroutine find_keys()
          integer :: k, stride
 
          stride = max(1, 1 + (drawing%films - 2)/max(1, &
@@ -85,7 +85,7 @@ contains
                   abs(wrap_angle(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
             end associate
          end do
-      end subroutine find_course
+      end subroutine find_keys
 
       !> Draws the moving links, each with its shapes in its own axes and turned about its first corner, later ones over
       !> earlier ones.

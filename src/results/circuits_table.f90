@@ -23,7 +23,7 @@ module circuits_table
    !> cylinder has the length 0.
    type(phrase_t), parameter :: end_words(end_far:end_shut) = [text_not_limited, text_lost, text_shut]
    !> Digits of the drive's value at which circuits meet: it is known to the root of a rounding.
-   integer, parameter :: meeting_digits = 6
+   integer, parameter :: change_point_digits = 6
 
 contains
 
@@ -61,7 +61,7 @@ contains
       type(circuits_t), intent(in) :: found   !< of the drive
       character(column_ends(3)) :: row
       character(:), allocatable :: text
-      type(diagnostic_t) :: meeting
+      type(diagnostic_t) :: position
       integer :: i, k
 
       row = ' '//phrase(text_circuit, set%polish)
@@ -84,23 +84,23 @@ contains
       ! For each dead point the drive's value, links, and the branches that end there.
       if (size(found%dead) > 0) call put(o, ' '//phrase(text_dead_points, set%polish))
       do i = 1, size(found%dead)
-         meeting = found%dead(i)
-         meeting%part = found%part
+         position = found%dead(i)
+         position%part = found%part
          text = meeting_words(text_branch, text_branches, pack([(k, k=1, size(found%branches))], &
             [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), set%polish)//' ' &
-            //value_words(set, found, meeting%value)
-         if (meeting%links(1) > 0) text = text//', '//at_limit(set, meeting)
+            //value_words(set, found, position%value)
+         if (position%links(1) > 0) text = text//', '//at_limit(set, position)
          call write_folded(o, '   ', text, repeat(' ', 6))
       end do
 
       ! For each change point the circuits that meet there, and the drive's value.
       if (size(found%meetings) > 0) call put(o, ' '//phrase(text_change_points, set%polish))
       do i = 1, size(found%meetings)
-         meeting = diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=found%meetings(i)%value)
-         if (abs(meeting%value) <= sqrt(epsilon(1.0_wp))) meeting%value = 0.0_wp
+         position = diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=found%meetings(i)%value)
+         if (abs(position%value) <= sqrt(epsilon(1.0_wp))) position%value = 0.0_wp
          call put(o, '   '//meeting_words(text_circuit, text_circuit_numbers, &
             pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), set%polish)//' ' &
-            //measure(set, meeting, meeting_digits))
+            //measure(set, position, change_point_digits))
       end do
    end subroutine write_branches
 

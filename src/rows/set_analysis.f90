@@ -111,20 +111,20 @@ contains
    !> the closure error.
    subroutine foresee_closure(set)
       type(set_analysis_t), intent(inout) :: set   !< before its first instant; its estimators get the error
-      type(analysis_t) :: trial
+      type(analysis_t) :: first_run
       type(motion_t) :: q
       integer :: c, k
 
       do c = 1, set%now%count
          if (.not. (set%now%closing > 0.0_wp .and. set%list(c)%blocks%redundant > 0)) cycle
-         trial = set%list(c)
+         first_run = set%list(c)
          q = new_motion(size(set%now%parts(c)%links))
          do k = 0, instant_count(set%now) - 1
-            call advance(trial, instant(set%now, k), q)
+            call advance(first_run, instant(set%now, k), q)
          end do
          ! The error of an instant without a position is larger than the tolerance.
-         if (redundancy_error(trial) > inconsistent_level) &
-            set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
+         if (redundancy_error(first_run) > inconsistent_level) &
+            set%estimators(c)%closure = min(redundancy_error(first_run), set%now%closing)
       end do
    end subroutine foresee_closure
 
@@ -194,7 +194,7 @@ contains
       set%is_in_lane = .false.
       do c = 1, size(set%list)
          call advance(set%list(c), t, set%now%motions(c))
-         if (set%now%motions(c)%flag == flag_inconsistent) call report_surplus_drives(set, c)
+         if (set%now%motions(c)%flag == flag_inconsistent) call report_redundant_drives(set, c)
       end do
       call keep_instant(set)
    end subroutine advance_set
@@ -286,7 +286,7 @@ contains
 
    !> Reports the drives of which one may be too many, at the first instant at which redundant equations are
    !> inconsistent; nothing if there are none.
-   subroutine report_surplus_drives(set, part)
+   subroutine report_redundant_drives(set, part)
       type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer, intent(in) :: part               !< the number of the independent mechanism
       logical :: are(size(set%now%parts(part)%drives))
@@ -299,7 +299,7 @@ contains
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
          q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, are)]
       end associate
-   end subroutine report_surplus_drives
+   end subroutine report_redundant_drives
 
    !> Finds the rows of requests of a set at its last instant, or at a time between the instants. The motion of the last
    !> instant stays in `now`.
@@ -331,7 +331,7 @@ contains
             rows%known = -1
             if (.not. is_found) return
             if (allocated(q%turned)) call keep_turns(set%now%parts(c), q)
-            call take(c, q)
+            call find_rows_of(c, q)
          else if (set%is_in_lane) then
             do i = 1, size(list)
                call find_row_in_set(set%now, list(i), rows(i))
@@ -339,7 +339,7 @@ contains
             amplification = set%amplification
          else
             call restore_instant(set%list(c))
-            call take(c, set%now%motions(c))
+            call find_rows_of(c, set%now%motions(c))
          end if
       end associate
 
@@ -360,7 +360,7 @@ contains
       end function turned_near
 
       !> Finds the rows of a motion of an independent mechanism, and their errors.
-      subroutine take(part, q)
+      subroutine find_rows_of(part, q)
          integer, intent(in) :: part            !< the number of the independent mechanism
          type(motion_t), intent(in) :: q     !< the motion, of which the analysis has the state
          type(error_estimate_t) :: estimate
@@ -379,7 +379,7 @@ contains
                error(:, :, i) = estimate_of(rows(i), own, estimate, set%now%rows(list(i))%number)
             end do
          end associate
-      end subroutine take
+      end subroutine find_rows_of
    end subroutine rows_at
 
    !> Estimates the errors of the motion found last, and finds its sensitivities to numbers with tolerances.
