@@ -44,28 +44,27 @@ contains
       type(canvas_t), intent(inout) :: canvas   !< with all shapes; gets the names
       type(label_t), intent(inout) :: labels(:)   !< (any number) with room for further ones
       integer, intent(inout) :: used         !< number of labels that are found
-      logical, dimension(size(canvas%mechanism%points)) :: unnamed, printed
+      logical, dimension(size(canvas%mechanism%points)) :: free, printed   ! free: without a name yet
       real(wp) :: p(2, size(canvas%mechanism%points))
       integer :: i, best
 
-      unnamed = .not. canvas%mechanism%links(canvas%mechanism%points%link)%ground
+      free = .not. canvas%mechanism%links(canvas%mechanism%points%link)%ground
       do i = 1, size(canvas%mechanism%pairs)
          if (.not. has_guide(canvas%mechanism%pairs(i)%kind)) &
-            unnamed([canvas%mechanism%pairs(i)%point_i, canvas%mechanism%pairs(i)%point_j]) = .true.
+            free([canvas%mechanism%pairs(i)%point_i, canvas%mechanism%pairs(i)%point_j]) = .true.
       end do
-      unnamed = unnamed .and. .not. canvas%mechanism%links(canvas%mechanism%points%link)%hidden
-      unnamed = unnamed .and. canvas%snapshot%known(canvas%mechanism%points%link)
+      free = free .and. .not. canvas%mechanism%links(canvas%mechanism%points%link)%hidden
+      free = free .and. canvas%snapshot%known(canvas%mechanism%points%link)
       printed = .false.
       printed(pack(canvas%mechanism%requests%subject, has_path(canvas%mechanism%requests))) = .true.
       do i = 1, size(canvas%mechanism%points)
-         if (unnamed(i)) p(:, i) = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, i))
+         if (free(i)) p(:, i) = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, i))
       end do
 
-      do while (any(unnamed))
-         best = minloc(len_trim(canvas%mechanism%points%name) + merge(0, label_length + 1, printed), dim=1, &
-            mask=unnamed)
+      do while (any(free))
+         best = minloc(len_trim(canvas%mechanism%points%name) + merge(0, label_length + 1, printed), dim=1, mask=free)
          do i = 1, size(canvas%mechanism%points)
-            if (unnamed(i)) unnamed(i) = any(abs(p(:, i) - p(:, best)) > same_name_distance)
+            if (free(i)) free(i) = any(abs(p(:, i) - p(:, best)) > same_name_distance)
          end do
          if (canvas%mechanism%points(best)%name == &
             canvas%mechanism%links(canvas%mechanism%points(best)%link)%name) cycle
