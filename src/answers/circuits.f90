@@ -34,7 +34,7 @@ module circuits
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t
       integer :: circuit = 0                   !< number of the circuit
-      integer :: first = 0, last = 0           !< first and last point of the branch on the circuit
+      integer :: first = 0, last = 0           !< numbers of its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
       integer, allocatable :: assemblies(:)    !< (any number) on it at the first instant, by card ASSEMBLY

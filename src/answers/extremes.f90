@@ -212,9 +212,10 @@ contains
       coordinate%size_of(2) = coordinate%size_of(1)*sizes(2)
    end subroutine set_coordinate
 
-   !> Takes a value as the least or the greatest of a coordinate, if it is. A located value replaces the value of a node
-   !> less than a step away. A node replaces another node less than a step away if it is more extreme by more than
-   !> rounding, though equal otherwise: their distance is then the error of the time.
+   !> Takes a value as the least or the greatest of a coordinate, if the value is more extreme than those so far. A
+   !> located value replaces the value of a node less than a step away. A node replaces another node less than a step
+   !> away if its value is more extreme by more than rounding, though equal otherwise: their distance is then the error
+   !> of the time.
    pure subroutine offer(coordinate, k, extreme, step)
       type(coordinate_t), intent(inout) :: coordinate   !< gets the extreme
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2

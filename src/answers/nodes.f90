@@ -48,7 +48,7 @@ contains
    !> joint, unless there would be more than `max_parts`.
    pure function times_between(joints, longest, run, t1, t2) result(times)
       real(wp), intent(in) :: joints(:)      !< (joints) times, in the run's order
-      real(wp), intent(in) :: longest        !< time: no part is longer
+      real(wp), intent(in) :: longest        !< time of the longest part, unless there would be too many
       real(wp), intent(in) :: run            !< time of the whole run
       real(wp), intent(in) :: t1, t2         !< times of the instants, in the run's order
       real(wp), allocatable :: times(:)

@@ -260,7 +260,7 @@ contains
    !> Writes the last lines of a set: the closure error of redundant equations, and the error that a closing tolerance
    !> allows; diagnostics; the counts of certificates; the counts of solved and flagged instants.
    subroutine listing_end(o, set, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
-      type(output_t), intent(inout) :: o     !< after its last instant
+      type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set        !< after its last instant
       integer, intent(in) :: solved, flagged   !< counts of instants
       type(certificate_counts_t), intent(in) :: certificate_counts   !< of all instants

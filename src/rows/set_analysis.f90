@@ -219,9 +219,10 @@ contains
       if (is_taken) call keep_instant(set)
    end subroutine accept_state
 
-   !> Keeps the numbers of an instant that later instants need, after the analyses or a lane have found it. A row has no
-   !> other place for numbers that it keeps from instant to instant. An instant that a lane hands back comes again from
-   !> the analysis. Times between two instants do not come, nor do instants of a lane if no row is asked for.
+   !> Keeps the numbers of an instant that later instants need, after the analyses or a lane have found the motion. A
+   !> row has no other place for numbers that it keeps from instant to instant. An instant that a lane hands back is
+   !> kept when the analysis has found it. Times between two instants are not kept, nor instants of a lane if no row is
+   !> asked for.
    subroutine keep_instant(set)
       type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer :: c
