@@ -46,7 +46,7 @@ module csv
    real(wp), parameter :: no_errors(3, 0:2) = nothing_known
 
    !> Characters of the name of a drive's column: RELANGLE.A.B, with a number of up to seven digits.
-   integer, parameter :: drive_length = 3*label_length + 10
+   integer, parameter :: drive_column_length = 3*label_length + 10
    !> A value that does not exist or has no known digit.
    character(*), parameter :: missing = 'NaN'
 
@@ -58,7 +58,7 @@ module csv
 
    !> The columns of the table of a set.
    type :: table_t
-      character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
+      character(drive_column_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
       type(table_column_t), allocatable :: columns(:)     !< (any number) the others, by derivative and request
       type(drive_t), allocatable :: laws(:)               !< (drives) functions of time
    end type table_t
@@ -277,7 +277,7 @@ contains
    !> so on: ANGLE.CRANK, ANGLE.CRANK.2.
    function drive_columns(set) result(columns)
       class(set_t), intent(in) :: set        !< of the drives
-      character(drive_length), allocatable :: columns(:)
+      character(drive_column_length), allocatable :: columns(:)
       integer :: i, number
 
       allocate (columns(size(set%drives)))
