@@ -1,10 +1,12 @@
-!> What callers of public procedures must pass. The debug build asserts it; in others the conditions are not compiled.
+!> Conditions that callers of public procedures must meet. Only the debug build asserts them: other builds leave them
+!> out.
 module assertions
    implicit none
    private
    public :: asserts, assert
 
-   !> Each call of `assert` stands behind it: a condition that is never evaluated costs nothing.
+   !> The build asserts conditions. Callers write `if (asserts) call assert(...)`: a condition that is never evaluated
+   !> costs nothing.
 #ifdef ASSERTIONS
    logical, parameter :: asserts = .true.
 #else
@@ -13,10 +15,10 @@ module assertions
 
 contains
 
-   !> Ends the program if a condition does not hold.
+   !> Ends the program with a message if a condition does not hold.
    pure subroutine assert(holds, what)
       logical, intent(in) :: holds           !< the condition
-      character(*), intent(in) :: what       !< the procedure, and what it needs
+      character(*), intent(in) :: what       !< the message: the procedure and the condition
 
       if (.not. holds) error stop what
    end subroutine assert

@@ -18,9 +18,9 @@ module failures
 
 contains
 
-   !> Makes a failure from a status and a sentence.
+   !> Makes a failure from an exit status and a sentence. An earlier failure is replaced.
    subroutine fail(failure, status, text)
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< the failure
       integer, intent(in) :: status   !< exit status: one of the parameters above
       character(*), intent(in) :: text   !< the sentence, in capitals, without a full stop
 
@@ -29,7 +29,7 @@ contains
       failure%text = text
    end subroutine fail
 
-   !> Gives a text in the capitals of all messages. Only the letters of ASCII change.
+   !> Gives a text in capitals, as messages have it. Only small letters of ASCII change.
    elemental function capitals(text) result(upper)
       character(*), intent(in) :: text   !< any characters
       character(len(text)) :: upper

@@ -1,4 +1,4 @@
-!> Numbers of which not all digits are known: a question mark in the place of each that is not.
+!> Numbers of which some digits are unknown, as text: a question mark stands for each unknown digit.
 module masked_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -9,45 +9,46 @@ module masked_numbers
    private
    public :: write_known, unknown_digit, nothing_known, errors_a_digit
 
-   !> In the place of a digit that is not known.
+   !> Stands for a digit that is not known.
    character(1), parameter :: unknown_digit = '?'
-   !> The error of a number of which nothing is known; divided by a unit of length or angle it is no infinity.
+   !> The error of a number without a known digit: finite even after the division by a unit of length or angle.
    real(wp), parameter :: nothing_known = sqrt(huge(1.0_wp))
-   !> The last digit that is shown is worth so many errors: otherwise another program, as right as this one, would
-   !> round it to another digit.
+   !> One unit of the last digit that is shown is at least so many errors: with fewer, another program with errors of
+   !> this size would often print another last digit.
    real(wp), parameter :: errors_a_digit = 100.0_wp
 
 contains
 
-   !> Writes a number with a limited number of known digits. It is rounded to its last known digit, and digits after
-   !> that one are masked. A number whose digits are all known is written as `write_fixed` writes it.
+   !> Writes a number of which a limited number of digits is known: rounded to the last known digit, with later digits
+   !> masked. If all digits are known, the text is the text of `write_fixed`; if none is, one question mark.
    pure subroutine write_known(value, error, decimals, power, text, masked)
       real(wp), intent(in) :: value          !< the number, in any unit
       real(wp), intent(in) :: error          !< its estimated error, in the unit of `value`; 0: all digits are known
       integer, intent(in) :: decimals        !< decimals at most, 0 or more
       integer, intent(in) :: power           !< `value` 10**-`power` is written
       character(numeral_length), intent(out) :: text   !< right-adjusted
-      logical, intent(inout), optional :: masked   !< becomes true if a digit is masked; otherwise it stays
+      logical, intent(inout), optional :: masked   !< becomes true if a digit is masked; otherwise unchanged
       integer(int64) :: n
       logical :: is_known
       integer :: last
 
-      ! Most errors are 0, and powers take long.
+      ! Most errors are 0, and a power takes much time.
       is_known = error <= 0.0_wp
       if (.not. is_known) is_known = error*errors_a_digit <= 10.0_wp**(power - decimals)
       if (is_known) then
          call write_fixed(value, decimals, power, text)
          return
       else if (.not. error <= 1.0e-6_wp*nothing_known) then
+         ! No digit is known: `nothing_known` divided by a unit up to a million, or NaN.
          text = repeat(' ', numeral_length - 1)//unknown_digit
       else
-         ! The value is n 10**last as far as it is known; a half is rounded up where it is all that is left.
+         ! The known digits of the value are n 10**last. A value of half a digit or more becomes one digit, not zero.
          last = ceiling(log10(error*errors_a_digit))
          n = nearest_whole(abs(value), -last)
          if (n == 0 .and. abs(value) >= 0.5_wp*10.0_wp**last) n = 1
          text = masked_text(n, last - power, decimals, value < 0.0_wp .and. n > 0)
          if (text == '') then
-            ! All that there is room for is known.
+            ! All digits for which there is room are known.
             call write_fixed(value, decimals, power, text)
             return
          end if
@@ -55,8 +56,8 @@ contains
       if (present(masked)) masked = .true.
    end subroutine write_known
 
-   !> Gives n 10**last as text; digits worth less than 10**last are masked. The text has an exponent if fixed point has
-   !> no room for it, and is blank if there is no room for a masked digit.
+   !> Gives n 10**last as text, right-adjusted; digits worth less than 10**last are masked. The text has an exponent if
+   !> the number is too long for fixed point, and is blank if there is no room for a masked digit.
    pure function masked_text(n, last, decimals, negative) result(text)
       integer(int64), intent(in) :: n        !< the known digits, as a whole number, 0 or more
       integer, intent(in) :: last            !< the power of ten of the last known digit
@@ -86,7 +87,7 @@ contains
       text = ''
       if (last <= 0) return
 
-      ! With an exponent, as a number whose digits are known would have it; here n > 0.
+      ! With an exponent, in the form that a number with known digits has; here n > 0.
       call write_whole(n, digits, first)
       known = len(digits) - first + 1
       call write_exponent(last + known - 1, shown)

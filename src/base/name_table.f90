@@ -1,4 +1,4 @@
-!> A hash table from names to numbers (open addressing).
+!> A hash table from names to numbers (open addressing: Knuth, The Art of Computer Programming, vol. 3, sec. 6.4).
 module name_table
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
@@ -6,15 +6,16 @@ module name_table
    private
    public :: name_table_t, store_name, find_name
 
-   !> Slots of an empty table. At most every second slot is filled.
+   !> Slots of a new table. Of the slots of any table at most every second one is filled.
    integer, parameter :: first_size = 64
 
-   !> A place of the table.
+   !> A slot of the table.
    type :: slot_t
       character(label_length) :: name = ''
       integer :: number = 0                !< 0: the slot is free
    end type slot_t
 
+   !> A table of names, empty at first.
    type :: name_table_t
       private
       integer :: filled = 0                !< slots that are not free
@@ -23,9 +24,9 @@ module name_table
 
 contains
 
-   !> Enters a name with its number. If the table has the name already, nothing changes.
+   !> Enters a name with its number into a table. If the table has the name already, nothing changes.
    subroutine store_name(table, name, number, earlier)
-      type(name_table_t), intent(inout) :: table
+      type(name_table_t), intent(inout) :: table   !< the names so far
       character(*), intent(in) :: name       !< at most `label_length` characters count
       integer, intent(in) :: number          !< of the name, above 0
       integer, intent(out) :: earlier        !< the number that the name has in the table already; 0: the name is new
@@ -39,6 +40,8 @@ contains
       table%slots(slot) = slot_t(name, number)
       table%filled = table%filled + 1
       if (2*table%filled <= size(table%slots)) return
+
+      ! More than half of the slots are filled: their number is doubled.
       call move_alloc(table%slots, old)
       allocate (table%slots(2*size(old)))
       do i = 1, size(old)
@@ -48,16 +51,16 @@ contains
 
    !> Gives the number of a name, or 0 if the table does not have the name.
    pure integer function find_name(table, name) result(number)
-      type(name_table_t), intent(in) :: table
+      type(name_table_t), intent(in) :: table   !< the names so far
       character(*), intent(in) :: name   !< at most `label_length` characters count
 
       number = 0
       if (allocated(table%slots)) number = table%slots(slot_of(table%slots, name))%number
    end function find_name
 
-   !> Finds the slot of a name, or the free slot where the name belongs. There is always a free slot.
+   !> Finds the slot of a name: the slot that has the name or, if none has it, the free slot in which the name belongs.
    pure integer function slot_of(slots, name) result(k)
-      type(slot_t), intent(in) :: slots(:)
+      type(slot_t), intent(in) :: slots(:)   !< (power of two) those of a table, one of them free
       character(*), intent(in) :: name   !< at most `label_length` characters count
       character(label_length) :: key
       integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64

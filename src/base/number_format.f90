@@ -21,13 +21,14 @@ module number_format
    !> Digits that tell any two reals apart: 17 for 53 bits.
    integer, parameter :: significant = 2 + int(digits(1.0_wp)*log10(2.0))
    integer :: k  !< index of the constructors below, never set: gfortran 12 rejects its declaration inside
+   !> Powers of ten: all that fit in 64 bits.
    integer(int64), parameter :: tens(0:18) = [(10_int64**k, k = 0, 18)]
 
-   !> A kind that holds high + low; `wp` where there is none. `able`: p + e can be formed.
+   !> A kind that holds high + low, or `wp` if there is none. `able`: p + e can be formed, with halves of 53 bits.
    integer, parameter :: long = max(selected_real_kind(2*precision(1.0_wp)), wp)
    logical, parameter :: able = digits(1.0_wp) == 53 .and. digits(1.0_long) >= 106
 
-   !> The powers of ten 10**-max_power to 10**max_power: none overflows and no low part is denormal.
+   !> The largest exponent of a power of ten in these tables: no power overflows, and no low part is denormal.
    integer, parameter :: max_power = merge(250, 15, range(1.0_wp) > 300)
    real(long), parameter :: powers(-max_power:max_power) = [(10.0_long**k, k = -max_power, max_power)]
    real(wp), parameter :: high(-max_power:max_power) = real(powers, wp)
@@ -36,9 +37,9 @@ module number_format
    integer, parameter :: last_exact = 22
    !> 16 times the relative error of p + e.
    real(wp), parameter :: sum_margin = 2.0_wp**(-100)
-   !> Below this bound p alone decides in most cases: its fraction is exact.
+   !> Below this bound p alone decides in most cases: the difference of p and a whole number is exact.
    real(wp), parameter :: plain = 2.0_wp**45
-   !> Relative error of p, and half as much again: p has two roundings of 2**-53, those of high and of the product.
+   !> The relative error of p and half as much again: p has two roundings of 2**-53, of `high` and of the product.
    real(wp), parameter :: plain_margin = 3.0_wp*2.0_wp**(-53)
    !> From here on neighbouring reals p differ by 1/2 or more, and e may be larger than 1/2.
    real(wp), parameter :: coarse = 2.0_wp**51
@@ -48,11 +49,11 @@ module number_format
    real(wp), parameter :: high_head(-max_power:max_power) = splitter*high - (splitter*high - high)
    real(wp), parameter :: high_tail(-max_power:max_power) = high - high_head
 
-   !> Characters of a number in the tables, one blank before it included.
+   !> Characters of a number in the tables, with one blank before it.
    integer, parameter :: numeral_length = 12
-   !> Decimals of such a number at most: the blank, a digit and the point stand before them.
+   !> Decimals of a number in the tables at most: a blank, a digit and the point stand before them.
    integer, parameter :: max_decimals = numeral_length - 3
-   !> Digits of an exponent, and characters of a number in full, with its sign and that of its exponent.
+   !> Digits of an exponent, and characters of a number in full: its sign, point, E and the exponent's sign are four.
    integer, parameter :: exponent_digits = merge(4, 3, range(1.0_wp) >= 1000)
    integer, parameter :: full_length = significant + 4 + exponent_digits
 
@@ -70,9 +71,9 @@ module number_format
 
 contains
 
-   !> Gives value 10**-power, correctly rounded and right-adjusted, with as many decimals as there is room for. The text
-   !> has an exponent if even the whole part has no room. A negative number has no zero before the point if nine
-   !> decimals leave no room for the zero: -.012345678.
+   !> Gives value 10**-power as text, correctly rounded and right-adjusted, with as many decimals as there is room for.
+   !> The text has an exponent if the whole part is too long. A negative number has no zero before the point if nine
+   !> decimals leave no room for the zero: -.012345678. Infinity and NaN are words.
    pure function fixed(value, decimals, power) result(text)
       real(wp), intent(in) :: value          !< the number, in any unit
       integer, intent(in) :: decimals        !< decimals at most, 0 or more
@@ -82,7 +83,7 @@ contains
       call write_fixed(value, decimals, power, text)
    end function fixed
 
-   !> Writes value 10**-power into a text, with the digits of `fixed`. For the many numbers of a table this is faster.
+   !> Writes value 10**-power into a text, as `fixed` gives it. For the many numbers of a table this is faster.
    pure subroutine write_fixed(value, decimals, power, text)
       real(wp), intent(in) :: value          !< the number, in any unit
       integer, intent(in) :: decimals        !< decimals at most, 0 or more
@@ -107,7 +108,7 @@ contains
       text = with_exponent(value, power)
    end subroutine write_fixed
 
-   !> Writes the minus sign of a number. The sign takes the place of the zero before the point if nothing else is free.
+   !> Writes the minus sign of a number before the number, or over the zero before its point if there is no room.
    pure subroutine write_minus(decimals, first, text)
       integer, intent(in) :: decimals        !< decimals of the number
       integer, intent(in) :: first           !< the character at which the number begins
@@ -119,7 +120,8 @@ contains
       text(place:place) = '-'
    end subroutine write_minus
 
-   !> Gives value 10**-power with an exponent and as many digits as there is room for, right-adjusted.
+   !> Gives value 10**-power as text with an exponent and as many digits as there is room for, right-adjusted. Infinity
+   !> and NaN are words.
    pure function with_exponent(value, power) result(text)
       real(wp), intent(in) :: value          !< the number, in any unit; it may be infinite or NaN
       integer, intent(in) :: power           !< of ten, by which the number is divided
@@ -154,11 +156,11 @@ contains
       call write_digits(int(abs(exponent), int64), text(2:merge(4, table_exponent_length, abs(exponent) < 1000)))
    end subroutine write_exponent
 
-   !> Gives a number in a few digits, rounded and without blanks. It is in fixed point if its size is 0 or lies in the
-   !> range of fixed point; otherwise it has an exponent.
+   !> Gives a number as text in a few digits, rounded and without blanks: in fixed point if its size is 0 or within
+   !> bounds, otherwise with an exponent.
    pure function rounded(value, digits, from, to) result(text)
       real(wp), intent(in) :: value          !< the number, in any unit
-      real(wp), intent(in) :: from           !< the least size in fixed point, in the unit of `value`
+      real(wp), intent(in) :: from           !< the smallest size in fixed point, in the unit of `value`
       real(wp), intent(in) :: to             !< the size from which on there is an exponent, in the unit of `value`
       integer, intent(in) :: digits          !< how many digits, 1 or more
       character(:), allocatable :: text
@@ -167,7 +169,7 @@ contains
       integer(int64) :: n
       integer :: order
 
-      ! Rounding may make it the next power of ten.
+      ! Rounding may make the number the next power of ten.
       call first_digits(abs(value), digits, n, order)
       if (abs(value) > 0.0_wp .and. (abs(value) < from .or. abs(value) >= to)) then
          write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
@@ -193,7 +195,7 @@ contains
       text = field(first:)
    end function whole
 
-   !> Gives a number with as many digits as it needs to read back unchanged, the sign of a zero included.
+   !> Gives a number as text with as many digits as reading it back unchanged needs, with the sign of a zero.
    pure function full(value) result(text)
       real(wp), intent(in) :: value   !< any number; it may be infinite or NaN
       character(:), allocatable :: text
@@ -204,7 +206,7 @@ contains
       text = field(:length)
    end function full
 
-   !> Writes a number with as many digits as it needs to read back unchanged. This is faster than `full`.
+   !> Writes a number with as many digits as reading it back unchanged needs. This is faster than `full`.
    pure subroutine write_full(value, text, length)
       real(wp), intent(in) :: value          !< any number; it may be infinite or NaN
       character(full_length), intent(out) :: text   !< left-adjusted
@@ -223,9 +225,10 @@ contains
             number = full_zero
             return
          end if
+
          call leading_digits(abs(value), significant, n, e, sure)
          if (sure) then
-            ! No pair of digits of one half needs the result of the other: that is faster.
+            ! Two halves, so that no pair of digits in one waits for the other: that is faster.
             upper = n/tens(8)
             call write_digits(upper, number(3:10), first)
             call write_digits(n - tens(8)*upper, number(11:18))
@@ -236,7 +239,7 @@ contains
             return
          end if
       end associate
-      ! The digits of some numbers only a format decides.
+      ! For some numbers only a format decides the digits.
       write (form, '(a,i0,a,i0,a,i0,a)') '(es', full_length, '.', significant - 1, 'e', exponent_digits, ')'
       write (text, form) value
       text = adjustl(text)
@@ -247,7 +250,7 @@ contains
    pure subroutine write_digits(n, text, before)
       integer(int64), intent(in) :: n        !< 0 or more
       character(*), intent(inout) :: text    !< becomes digits only, with leading zeros
-      integer(int64), intent(out), optional :: before   !< the number that the digits before those make
+      integer(int64), intent(out), optional :: before   !< the rest of `n`: its digits before those written
       integer(int64) :: rest, next
       integer :: i, pair
 
@@ -266,7 +269,6 @@ contains
       if (present(before)) before = rest
    end subroutine write_digits
 
-   !> Writes all digits of `n` >= 0 at the end of `text`, from its character `first` on.
    !> Writes all digits of a whole number at the end of a text. The characters before them stay.
    pure subroutine write_whole(n, text, first)
       integer(int64), intent(in) :: n        !< 0 or more
@@ -284,8 +286,8 @@ contains
       text(first:first) = achar(48 + int(rest))
    end subroutine write_whole
 
-   !> Writes n 10**-decimals at the end of a text, with at least one digit before the point. The characters before it
-   !> stay.
+   !> Writes n 10**-decimals at the end of a text, with at least one digit before the point. The characters before the
+   !> number stay.
    pure subroutine write_with_point(n, decimals, text, first)
       integer(int64), intent(in) :: n        !< 0 or more
       integer, intent(in) :: decimals        !< how many, 0 to 10
@@ -304,7 +306,7 @@ contains
    !> digits, the result is 10**12 at least.
    pure integer(int64) function nearest_whole(value, k) result(n)
       real(wp), intent(in) :: value          !< 0 or more
-      integer, intent(in) :: k               !< power of ten, of any sign
+      integer, intent(in) :: k               !< exponent of ten, of any sign
       logical :: sure
 
       call decide_whole(value, k, n, sure)
@@ -315,8 +317,8 @@ contains
    !> certain. Source: Dekker, Numer. Math. 18 (1971) 224.
    pure subroutine decide_whole(value, k, n, sure)
       real(wp), intent(in) :: value          !< 0 or more, or NaN
-      integer, intent(in) :: k               !< power of ten, of any sign
-      integer(int64), intent(out) :: n       !< the whole number, if `sure`
+      integer, intent(in) :: k               !< exponent of ten, of any sign
+      integer(int64), intent(out) :: n       !< the whole number, if `sure`; otherwise of no use
       logical, intent(out) :: sure           !< the decision is certain, and `n` is 2E17 at most
       real(wp) :: p, e, multiple, x_head, x_tail, rest, beyond, side
       integer :: carry
@@ -328,12 +330,12 @@ contains
       if (.not. value < 2.0e17_wp*high(-k)) return
       p = value*high(k)
       if (p < plain) then
-         ! In which half the fraction is has no rule, and is no question. Where the sum rounds, that is not sure.
+         ! The fraction of p is compared with 1/2. If the sum rounds, or the fraction is near 1/2, this is not sure.
          n = int(p + 0.5_wp, int64)
          sure = 0.5_wp - abs(p - real(n, wp)) > plain_margin*p
          if (sure) return
       end if
-      ! Here p > 1/4: no denormal number in what follows. The error e = value 10**k - p:
+      ! Here p > 1/4, so that no number below is denormal. The error e = value 10**k - p, by halves of both factors:
       multiple = splitter*value
       x_head = multiple - (multiple - value)
       x_tail = value - x_head
@@ -348,7 +350,8 @@ contains
          n = n + carry
          e = e - real(carry, wp)
       end if
-      ! All differences are exact but for the last sum, whose sign is right. An exact sum is always sure.
+      ! Beyond 1/2 the next whole number is nearer. All differences are exact but for the last sum, whose sign is right.
+      ! For an exact power p + e is exact, and the decision is certain.
       side = sign(1.0_wp, rest + e)
       beyond = (side*rest - 0.5_wp) + side*e
       sure = abs(beyond) > sum_margin*p .or. (k >= 0 .and. k <= last_exact)
@@ -360,7 +363,7 @@ contains
       real(wp), intent(in) :: value          !< finite, 0 or more
       integer, intent(in) :: count           !< how many digits, 1 to 18
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
-      integer, intent(out) :: exponent       !< the power of ten of the first digit; 0 for 0
+      integer, intent(out) :: exponent       !< of ten, of the first digit; 0 for 0
       logical :: sure
 
       call leading_digits(value, count, n, exponent, sure)
@@ -373,7 +376,7 @@ contains
       real(wp), intent(in) :: value          !< 0 or more, or NaN
       integer, intent(in) :: count           !< how many digits, 1 to `significant`
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count, if `sure`
-      integer, intent(out) :: power          !< the power of ten of the first digit, if `sure`
+      integer, intent(out) :: power          !< exponent of ten of the first digit, if `sure`
       logical, intent(out) :: sure           !< the digits are certain; never for 0
 
       n = 0
@@ -391,12 +394,12 @@ contains
       power = power + 1
    end subroutine leading_digits
 
-   !> Gives the whole number nearest to value 10**k by formats, which round its decimal value. Beyond 12 digits the
-   !> result is huge(n). Rejected: the scale factor kP. The library of gfortran prints wrong digits from -21P down. In a
-   !> narrow field with some hundreds of P it writes beyond its own buffer.
+   !> Gives the whole number nearest to value 10**k by formats, which round the decimal value. Beyond 12 digits, for
+   !> infinity and for NaN the result is huge(n). Rejected: the scale factor kP. The library of gfortran prints wrong
+   !> digits from -21P down. In a narrow field with some hundreds of P it writes beyond its own buffer.
    pure function nearest_by_format(value, k) result(n)
       real(wp), intent(in) :: value          !< 0 or more, or NaN
-      integer, intent(in) :: k               !< power of ten, of any sign
+      integer, intent(in) :: k               !< exponent of ten, of any sign
       integer(int64) :: n
       character(80) :: line
       integer :: e, carried, places
@@ -424,7 +427,7 @@ contains
       real(wp), intent(in) :: value          !< finite, 0 or more
       integer, intent(in) :: count           !< how many digits, 1 to 18
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
-      integer, intent(out) :: exponent       !< the power of ten of the first digit; 0 for 0
+      integer, intent(out) :: exponent       !< of ten, of the first digit; 0 for 0
       character(80) :: line
 
       line = scientific(value, count - 1)
@@ -433,7 +436,7 @@ contains
       read (line, '(i18)') n
    end subroutine digits_by_format
 
-   !> Gives a number with one digit before the point and an exponent, left-adjusted.
+   !> Gives a number as text with one digit before the point and an exponent, left-adjusted. Infinity and NaN are words.
    pure function scientific(value, decimals) result(line)
       real(wp), intent(in) :: value   !< any number; it may be infinite or NaN
       integer, intent(in) :: decimals   !< digits after the point, 0 or more

@@ -1,5 +1,5 @@
-!> Angles, in degrees and without whole turns, and vectors of the plane, as x and y: rotation, quarter turn, cross
-!> product, a point that rotates with a link.
+!> Angles in degrees and without whole turns. Vectors of the plane as x and y: rotation, quarter turn, cross product, a
+!> point that rotates with a link.
 module plane_vectors
    use kinds, only: wp, exact_power
    use number_types, only: vector_t
@@ -8,6 +8,7 @@ module plane_vectors
    public :: pi, full_turn, degree, in_degrees, wrap_angle
    public :: vector_t, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
 
+   !> Half a turn in radians, with the digits of real128 and more.
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
    !> One turn in radians.
    real(wp), parameter :: full_turn = 2.0_wp*pi
@@ -16,16 +17,16 @@ module plane_vectors
 
 contains
 
-   !> Gives the length of a vector.
+   !> Gives the length of a vector, in its unit.
    elemental real(wp) function length_of(vector) result(length)
-      type(vector_t), intent(in) :: vector
+      type(vector_t), intent(in) :: vector   !< x and y, in any unit
 
       length = norm2([vector%x, vector%y])
    end function length_of
 
-   !> Gives an angle in degrees. Degrees of a deck with at most precision(1.0_wp) digits come back as they were. Several
-   !> numbers of degrees have one nearest number of radians, and the one with the fewest digits is meant. Any other
-   !> angle comes back within one rounding.
+   !> Gives an angle in degrees. Degrees of a deck with at most precision(1.0_wp) digits come back as they were: several
+   !> numbers of degrees have one nearest number of radians, and the result is the one with the fewest digits. Any other
+   !> angle is right within one rounding.
    pure elemental real(wp) function in_degrees(angle) result(d)
       real(wp), intent(in) :: angle          !< rad, or rad per unit of time to any power
       real(wp) :: power, rounded
@@ -47,7 +48,7 @@ contains
       rest = angle - full_turn*anint(angle/full_turn)
    end function wrap_angle
 
-   !> Gives the unit vector (2) at an angle.
+   !> Gives the unit vector x, y (2) at an angle.
    pure function direction(angle) result(e)
       real(wp), intent(in) :: angle          !< rad, from the x axis
       real(wp) :: e(2)
@@ -55,7 +56,7 @@ contains
       e = [cos(angle), sin(angle)]
    end function direction
 
-   !> Rotates a vector (2) by the angle of a direction.
+   !> Rotates a vector (2) by the angle of a direction. The unit stays.
    pure function rotated(vector, direction) result(w)
       real(wp), intent(in) :: vector(2)      !< x, y, in any unit
       real(wp), intent(in) :: direction(2)   !< x, y of the unit vector at the angle
@@ -64,8 +65,8 @@ contains
       w = [vector(1)*direction(1) - vector(2)*direction(2), vector(1)*direction(2) + vector(2)*direction(1)]
    end function rotated
 
-   !> Rotates a vector (2) by a right angle, counterclockwise. The result is the derivative of a rotating vector with
-   !> respect to its angle.
+   !> Rotates a vector (2) by a right angle, counterclockwise: the derivative of a rotating vector with respect to its
+   !> angle. The unit stays.
    pure function quarter_turn(vector) result(w)
       real(wp), intent(in) :: vector(2)      !< x, y, in any unit
       real(wp) :: w(2)
@@ -73,8 +74,8 @@ contains
       w = [-vector(2), vector(1)]
    end function quarter_turn
 
-   !> Gives the cross product u_x v_y - u_y v_x of u = `first` and v = `second`. It is also v . u' with the quarter turn
-   !> u' of u.
+   !> Gives the cross product u_x v_y - u_y v_x of u = `first` and v = `second`, in the product of their units. It is
+   !> also the scalar product of v with the quarter turn of u.
    pure real(wp) function cross(first, second)
       real(wp), intent(in) :: first(2)       !< x, y, in any unit
       real(wp), intent(in) :: second(2)      !< x, y, in any unit
@@ -82,7 +83,7 @@ contains
       cross = first(1)*second(2) - first(2)*second(1)
    end function cross
 
-   !> Gives the place (2) of a point of a link.
+   !> Gives the position x, y (2, length) of a point of a link.
    pure function point_of(position, offset) result(p)
       real(wp), intent(in) :: position(3)    !< of the link: x, y (length), phi (rad)
       real(wp), intent(in) :: offset(2)      !< length, in the link's own axes, from its origin
@@ -100,7 +101,7 @@ contains
       real(wp), intent(in) :: acceleration   !< phi'', rad per unit of time squared
       real(wp), intent(inout) :: position(2)   !< length
       real(wp), intent(inout) :: velocity(2)   !< length per unit of time
-      real(wp), intent(inout) :: change(2)   !< change of velocity: length per unit of time squared
+      real(wp), intent(inout) :: change(2)   !< acceleration: length per unit of time squared
       real(wp) :: square
 
       square = rate*rate

@@ -1,5 +1,6 @@
-!> What Fortran has not: bytes of files, the identity of a file, the reason of an error, and signals. The first SIGINT
-!> or SIGTERM is only noted, and the job ends after its instant, with whole lines; the second one kills.
+!> Calls of the system that Fortran does not have: bytes of files, the identity of a file, the reason of an error, and
+!> signals. The first SIGINT or SIGTERM is only recorded, and the job ends after its instant, with whole lines; the
+!> second one kills.
 !>
 !> The Fortran run-time library of GNU reports no error of a full disk, neither from WRITE nor from FLUSH nor from
 !> CLOSE, and takes a failed read for the end of a file.
@@ -14,7 +15,7 @@ module system_calls
    public :: watch_signals, notes_all, signal_received, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, closed_descriptor
 
-   !> The identity of a file.
+   !> The identity of a file; the default of the type: there is no such file.
    type :: identity_t
       integer(c_int32_t) :: device(2) = 0  !< major and minor number
       integer(c_int64_t) :: inode = 0
@@ -22,13 +23,14 @@ module system_calls
       logical :: device_or_pipe = .false.  !< neither regular nor a directory, and not missing
    end type identity_t
 
-   !> Flags of open, of statx and numbers of errors are alike on every architecture of Linux. O_RDONLY and O_WRONLY:
+   !> O_RDONLY and O_WRONLY of open. These flags, flags of statx and numbers of errors have one value on every
+   !> architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
    !> ENOENT and EBADF.
    integer, parameter :: no_such_file = 2, closed_descriptor = 9
    !> The descriptor of standard input.
    integer(c_int), parameter :: standard_input = 0
-   !> AT_FDCWD of statx: paths begin at the working directory. STATX_BASIC_STATS: the facts that stat has.
+   !> AT_FDCWD of statx: paths begin at the working directory. STATX_BASIC_STATS: the facts that stat gives.
    integer(c_int), parameter :: from_working_directory = -100, basic_facts = int(z'7FF', c_int)
    !> AT_EMPTY_PATH: the descriptor itself. AT_SYMLINK_NOFOLLOW: a symbolic link itself.
    integer(c_int), parameter :: empty_path = int(z'1000', c_int), no_links = int(z'100', c_int)
@@ -40,17 +42,17 @@ module system_calls
    !> SIGINT, SIGPIPE, SIGTERM, SIGCHLD, SIGXFSZ: numbers of signals.
    integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_child = 17, &
       signal_file_size = 25
-   !> The signals that are noted.
+   !> The signals that are recorded.
    integer(c_int), parameter :: watched(2) = [signal_interrupt, signal_terminate]
    !> The address that means "ignore"; null means the usual action.
    integer(c_intptr_t), parameter :: ignored = 1
 
-   !> The signal that was noted: all that a handler may change.
+   !> The last signal that was recorded: a handler may change nothing else.
    integer(c_int), volatile :: received = 0
-   !> Every signal is noted, not only the first: the process ends by itself after that.
+   !> Every signal is recorded, not only the first: the process ends by itself afterwards.
    logical, volatile :: notes_all = .false.
 
-   !> The result of statx. Unlike that of stat it is the same on every architecture.
+   !> The facts of statx: the layout of stat would depend on the architecture.
    type, bind(c) :: statx_t
       integer(c_int32_t) :: head(7)
       integer(c_int16_t) :: mode, spare
@@ -61,14 +63,14 @@ module system_calls
    end type statx_t
 
    interface
-      !> Finds the kind of a file and its identity: statx(2). The result is 0, or -1 for an error.
+      !> Finds the kind and the identity of a file: statx(2). The result is 0, or -1 for an error.
       integer(c_int) function statx(directory, path, flags, mask, facts) bind(c)
          import :: c_int, c_char, statx_t
          integer(c_int), value :: directory   !< where the path begins: `from_working_directory` or a descriptor
          integer(c_int), value :: flags       !< 0, `empty_path` or `no_links`
          integer(c_int), value :: mask        !< the facts that are wanted: `basic_facts`
          character(kind=c_char), intent(in) :: path(*)   !< ends with a null
-         type(statx_t), intent(out) :: facts
+         type(statx_t), intent(out) :: facts !< the facts, if the result is 0
       end function statx
       !> Opens a file that exists: open(2) without a mode. The result is a descriptor, negative for an error.
       integer(c_int) function c_open(path, flags) bind(c, name='open')
@@ -151,7 +153,7 @@ contains
       if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_from(facts)
    end function identity_of
 
-   !> Gives the identity of a file that is open; the default of its type, if it is not.
+   !> Gives the identity of an open file. If the descriptor is not open, the result is the default of its type.
    type(identity_t) function identity_of_open(descriptor) result(id)
       integer(c_int), intent(in) :: descriptor   !< of the file
       type(statx_t) :: facts
@@ -159,9 +161,9 @@ contains
       if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_from(facts)
    end function identity_of_open
 
-   !> Takes the identity of a file from what the system knows of it.
+   !> Takes the identity of a file from the facts of the system.
    pure type(identity_t) function identity_from(facts) result(id)
-      type(statx_t), intent(in) :: facts
+      type(statx_t), intent(in) :: facts     !< those that `statx` has found
 
       id%device = facts%device
       id%inode = facts%inode
@@ -169,9 +171,9 @@ contains
       id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
    end function identity_from
 
-   !> Tells whether two are one regular file. A device, pipe or terminal may be used twice without harm.
+   !> Tells whether two identities are of one regular file. A device, pipe or terminal may be used twice without harm.
    elemental logical function same_file(first, second)
-      type(identity_t), intent(in) :: first, second
+      type(identity_t), intent(in) :: first, second   !< the identities of two files
 
       same_file = first%regular .and. second%regular .and. first%inode == second%inode .and. all(first%device == &
          second%device)
@@ -202,7 +204,7 @@ contains
    !> Reads bytes. The result is the number of bytes read: 0 at the end of the file, negative for an error.
    integer function read_bytes(descriptor, text)
       integer(c_int), intent(in) :: descriptor   !< of an open file
-      character(*), intent(out) :: text   !< as many bytes as it is long, at most
+      character(*), intent(out) :: text   !< gets the bytes, at most its length; the rest is undefined
 
       read_bytes = int(c_read(descriptor, text, len(text, c_size_t)))
    end function read_bytes
@@ -215,14 +217,14 @@ contains
       write_bytes = c_write(descriptor, text, len(text, c_size_t))
    end function write_bytes
 
-   !> Closes a file, and tells whether the system reports no error. A delayed write error is such an error.
+   !> Closes a file, and gives false if the system reports an error, such as a delayed write error.
    logical function close_descriptor(descriptor)
       integer(c_int), intent(in) :: descriptor   !< of an open file
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
 
-   !> Removes a regular file. A symbolic link stays, and so does its file.
+   !> Removes a regular file. A symbolic link stays, and the file to which it leads stays.
    subroutine remove_file(path)
       character(*), intent(in) :: path   !< of the file
       type(statx_t) :: facts
@@ -232,8 +234,8 @@ contains
       if (iand(int(facts%mode), kind_bits) == kind_regular) status = unlink(path//c_null_char)
    end subroutine remove_file
 
-   !> Opens standard input, output and error where they are closed: no deck is read then, and writing fails. Otherwise
-   !> the next file would take their descriptors, and what is printed would go into it.
+   !> Opens standard input, output and error for reading /dev/null if they are closed: then no deck is read, and writing
+   !> fails. Otherwise the next file would take their descriptors, and printed text would go into that file.
    subroutine occupy_standard_descriptors
       integer(c_int) :: descriptor
       logical :: closed
@@ -246,7 +248,7 @@ contains
       if (descriptor > 2) closed = close_descriptor(descriptor)
    end subroutine occupy_standard_descriptors
 
-   !> Gives the system's number of its last error.
+   !> Gives the system's number of its last error (errno).
    integer function last_error()
       integer(c_int), pointer :: number
 
@@ -254,7 +256,7 @@ contains
       last_error = number
    end function last_error
 
-   !> Gives the system's words for an error.
+   !> Gives the system's text for an error; '' if the system has none.
    function reason_of(error) result(text)
       integer, intent(in) :: error   !< the system's number of the error
       character(:), allocatable :: text
@@ -266,8 +268,8 @@ contains
       text = words(:index(words, c_null_char) - 1)
    end function reason_of
 
-   !> Notes SIGINT and SIGTERM from now on, unless they were ignored. The limit of file sizes becomes a write error and
-   !> is no longer a signal that kills.
+   !> Records SIGINT and SIGTERM from now on, unless they were ignored. The limit of file sizes becomes a write error
+   !> and is no longer a signal that kills.
    subroutine watch_signals
       type(c_funptr) :: before
       integer :: i
@@ -277,12 +279,12 @@ contains
          if (address(before) == ignored) before = signal(watched(i), before)
       end do
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
-      ! A parent that ignores this signal leaves no exit status of children.
+      ! If this process inherited that SIGCHLD is ignored, children would leave no exit status.
       before = signal(signal_child, c_null_funptr)
    end subroutine watch_signals
 
-   !> Handles a signal by what is safe at any moment: keeps its number, and restores the usual actions unless all are
-   !> noted.
+   !> Handles a signal by actions that are safe at any moment: keeps its number, and restores the usual actions unless
+   !> all signals are recorded.
    subroutine record_signal(number) bind(c)
       integer(c_int), value :: number   !< of the signal
       type(c_funptr) :: before
@@ -295,7 +297,7 @@ contains
       end do
    end subroutine record_signal
 
-   !> Gives the number of the signal that was noted; 0: none.
+   !> Gives the number of the last signal that was recorded; 0: none.
    integer function signal_received()
       signal_received = received
    end function signal_received
@@ -312,7 +314,7 @@ contains
 
    !> Gives the address of a handler as a number.
    pure integer(c_intptr_t) function address(handler)
-      type(c_funptr), intent(in) :: handler
+      type(c_funptr), intent(in) :: handler  !< of a signal; null: the usual action
 
       address = transfer(handler, 0_c_intptr_t)
    end function address

@@ -1,6 +1,6 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
-!> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
-!> in memory until the turn has come (`shares`).
+!> file keeps its old contents until the first block is written. If several processes write one file in turn, text is
+!> held in memory until the turn has come (`job_chunks`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -24,7 +24,7 @@ module text_output
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
       character(:), allocatable :: buffer    !< (buffer_length or more); not allocated: not open
-      integer :: written = 0, used = 0       !< what is not written yet stands in the buffer between these places
+      integer :: written = 0, used = 0       !< characters of the buffer: those after `written`, up to `used`, wait
       logical :: held = .false.              !< its turn to be written has not come: all text stays in the buffer
       logical :: made = .false.              !< the file did not exist before
       logical :: emptied = .false.           !< the old contents of the file are gone
@@ -33,11 +33,11 @@ module text_output
 
 contains
 
-   !> Opens a file for writing. The first block that is written replaces its old contents. Errors: status_system.
+   !> Opens a file for writing. The first block that is written replaces the old contents of the file.
    subroutine open_output(o, path, failure)
       type(output_t), intent(out) :: o
       character(*), intent(in) :: path   !< of the file; '' is standard output
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< status_system; not allocated: the output is open
 
       o%path = path
       allocate (character(buffer_length) :: o%buffer)
@@ -56,7 +56,7 @@ contains
          //capitals(reason_of(o%error))//')')
    end subroutine open_output
 
-   !> Opens an output that is no file: all of its text is held.
+   !> Opens an output that is no file: all its text is held in memory.
    subroutine open_held(o)
       type(output_t), intent(out) :: o
 
@@ -64,23 +64,22 @@ contains
       allocate (character(buffer_length) :: o%buffer)
    end subroutine open_held
 
-   !> Moves the text that an output holds to another one.
+   !> Moves the text that one output holds to the end of another output.
    subroutine move_text(from, o)
-      type(output_t), intent(inout) :: from  !< holds nothing then
-      type(output_t), intent(inout) :: o     !< has the text then, after its own
+      type(output_t), intent(inout) :: from  !< open; holds nothing afterwards
+      type(output_t), intent(inout) :: o     !< open; has the text afterwards, after its own
 
       call add(o, from%buffer(from%written + 1:from%used))
       from%written = 0
       from%used = 0
    end subroutine move_text
 
-   !> Rejects a file that would be both read and written, or written twice, under whatever names. Errors:
-   !> status_rejected.
+   !> Rejects a file that would be both read and written, or written twice, under any names.
    subroutine check_apart(list, deck, failure)
       type(output_t), intent(in) :: list(:)  !< (outputs) those that are open count
       character(*), intent(in) :: deck       !< the file of the deck; '' is standard input
-      type(failure_t), allocatable, intent(out) :: failure
-      type(identity_t) :: id(size(list)), read_from      ! those that are not open are no files
+      type(failure_t), allocatable, intent(out) :: failure   !< status_rejected; not allocated: the files are apart
+      type(identity_t) :: id(size(list)), read_from      ! of outputs that are not open: no file
       character(:), allocatable :: name
       integer :: i
 
@@ -99,10 +98,10 @@ contains
       if (any(same_file(read_from, id))) call fail(failure, status_rejected, name//' WOULD BE OVERWRITTEN')
    end subroutine check_apart
 
-   !> Appends one line, or the rest of one that `add` began.
+   !> Appends a line to an open output, or the rest of a line that `add` began.
    subroutine put(o, line)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: line   !< without its end
+      character(*), intent(in) :: line   !< any characters, without the end of the line
 
       if (len(line) >= len(o%buffer) - o%used) then
          call add(o, line)
@@ -114,7 +113,7 @@ contains
       o%buffer(o%used:o%used) = new_line('a')
    end subroutine put
 
-   !> Appends a part of a line.
+   !> Appends a part of a line to an open output.
    subroutine add(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text   !< any characters
@@ -122,7 +121,7 @@ contains
       integer :: held, last
 
       if (len(text) > len(o%buffer) - o%used .and. o%held) then
-         ! Room for text that is held, as much again up to 2**26, and for none that is written.
+         ! A larger buffer for all held text, with as much room again, up to 2**26 characters. Written text is dropped.
          held = held_length(o)
          allocate (character(max(len(o%buffer), held + len(text) + min(held + len(text), 2**26))) :: other)
          other(:held) = o%buffer(o%written + 1:o%used)
@@ -130,6 +129,7 @@ contains
          o%used = held
          o%written = 0
       end if
+
       if (len(text) > len(o%buffer) - o%used) then
          ! Whole lines are written, so that a killed process leaves no partial line.
          last = index(o%buffer(:o%used), new_line('a'), back=.true.)
@@ -146,14 +146,14 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Counts the characters that are held, or wait for a block to be full.
+   !> Counts the characters of an open output that are held, or wait for a block to be full.
    elemental integer function held_length(o)
       type(output_t), intent(in) :: o
 
       held_length = o%used - o%written
    end function held_length
 
-   !> Writes the first characters that are held. After a write error they are dropped.
+   !> Writes the first of the characters that an open output holds. After a write error these are dropped.
    subroutine write_held(o, length)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: length   !< how many characters, at most `held_length`
@@ -165,7 +165,8 @@ contains
       o%used = 0
    end subroutine write_held
 
-   !> Writes all text that is held, and holds no more. The buffer is then short and stays in the processor's cache.
+   !> Writes all text that an open output holds; later text is written block by block. The buffer is short again, so
+   !> that it stays in the processor's cache.
    subroutine release_output(o)
       type(output_t), intent(inout) :: o
 
@@ -176,18 +177,19 @@ contains
       allocate (character(buffer_length) :: o%buffer)
    end subroutine release_output
 
-   !> Writes the buffer of an open output at once, unless it is held: a reader that waits has its lines, and a write
-   !> error shows.
+   !> Writes the buffer of an output at once, if the output is open and not held: a reader that waits gets its lines,
+   !> and a write error shows.
    impure elemental subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
       if (allocated(o%buffer) .and. .not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
-   !> Writes the rest of the buffer and closes the output. Errors: status_system, if any line could not be written.
+   !> Writes the rest of the buffer of an open output and closes the output. If any line could not be written, this is a
+   !> failure.
    subroutine close_output(o, failure)
       type(output_t), intent(inout) :: o
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< status_system; not allocated: all lines are written
 
       call write_held(o, held_length(o))
       deallocate (o%buffer)
@@ -200,7 +202,7 @@ contains
       call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
 
-   !> Closes an output without writing, if it is open. The file is as it was before, and removed if it did not exist.
+   !> Closes an output without writing its buffer, if the output is open. A file that did not exist before is removed.
    impure elemental subroutine abandon_output(o)
       type(output_t), intent(inout) :: o
       logical :: closed
@@ -212,14 +214,15 @@ contains
       if (o%made) call remove_file(o%path)
    end subroutine abandon_output
 
-   !> Writes all of a text: the system may take it in several pieces. After a write error nothing is written.
+   !> Writes a text to the file of an open output, in as many pieces as the system takes. After a write error nothing is
+   !> written. The first text replaces the old contents of the file.
    subroutine write_text(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text   !< any characters
       type(identity_t) :: id
       integer(c_size_t) :: written, done
 
-      ! The old contents of the file go; devices and pipes have none.
+      ! Devices and pipes have no old contents.
       if (.not. (o%emptied .or. o%error /= 0)) then
          o%emptied = .true.
          id = identity_of_open(o%descriptor)
@@ -235,10 +238,10 @@ contains
       end do
    end subroutine write_text
 
-   !> Replaces each letter of a list in a text by a word.
+   !> Gives a text in which each letter of a list is replaced by a word.
    pure function replaced(text, letters, words) result(other)
       character(*), intent(in) :: text       !< any characters
-      character(*), intent(in) :: letters    !< those that are replaced
+      character(*), intent(in) :: letters    !< the letters that are replaced
       character(*), intent(in) :: words(:)   !< (letters) the word for each; blanks at its end do not count
       character(:), allocatable :: other
       integer :: i, k

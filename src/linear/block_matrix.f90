@@ -1,7 +1,7 @@
-!> The matrix of a block: dense and square (DGESV), sparse (KLU), or with more rows than columns, in the sense
-!> of least squares (DGEQRF). Dense ones are factored where they stand.
+!> The matrix of a block: dense and square (DGESV), sparse (KLU), or with more rows than columns, in the sense of least
+!> squares (DGEQRF). Dense matrices are factored in place.
 !>
-!> One right-hand side a call: for more OpenBLAS starts threads, at ten times the cost of a small system.
+!> Each call takes one right-hand side: for several OpenBLAS starts threads, at ten times the cost of a small system.
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, geqrf, ormqr, trtrs, lacn2
@@ -12,44 +12,46 @@ module block_matrix
       work_length
    public :: spread_by_inverse, nearby_t, stay_near, solve_nearby, sparse_factors_t, release
 
-   !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
-   !> order of the pattern.
+   !> The layout of a matrix of `rows` rows and `n` columns. `pattern` = 0: dense, by columns. Otherwise sparse and
+   !> square: `pattern` is the number of its pattern, `entries` counts its entries, which are in the order of the
+   !> pattern.
    type :: matrix_layout_t
       integer :: rows = 0, n = 0, pattern = 0, entries = 0
    end type matrix_layout_t
 
-   !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
+   !> From this many unknowns on KLU is not slower than DGESV: measured on lattices with reference LAPACK and OpenBLAS.
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
-   !> Columns that DGEQRF takes together.
+   !> Columns that DGEQRF takes together: the block size of reference LAPACK.
    integer, parameter :: panel = 32
 
-   !> The matrix of a block of two unknowns near another one that is factored: so near that its equations are solved by
-   !> those factors. In steps of some degrees that saves a second DGESV, a sixth of the step.
+   !> The matrix A of a block of two unknowns so near another matrix A0 that its equations are solved with the inverse
+   !> of A0. In steps of some degrees this saves a second DGESV, a sixth of the step.
    type :: nearby_t
-      real(wp) :: a(4) = 0.0_wp                  !< the matrix, by columns
-      real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
-      real(wp) :: inverse(4) = 0.0_wp            !< of the other, by columns
-      real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, A0 being factored; 0: `a` is not in use
+      real(wp) :: a(4) = 0.0_wp                  !< A, by columns
+      real(wp) :: factors(4) = 0.0_wp            !< of A0, kept here while A is assembled in their place
+      real(wp) :: inverse(4) = 0.0_wp            !< of A0, by columns
+      real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, maximum norm; 0: not in use
    end type nearby_t
 
-   !> A matrix that differs from the factored one by more than this part is factored itself.
+   !> With a larger `distance` a matrix is factored itself: each pass of refinement gains its four digits.
    real(wp), parameter :: max_distance = 1.0e-4_wp
-   !> A relative error below this is lost in that of a factorization.
+   !> A relative error below this is negligible compared with the error of a factorization.
    real(wp), parameter :: lost = 0.125_wp*epsilon(1.0_wp)
 
 contains
 
-   !> Tells whether a square matrix is best sparse. If there are many entries in a row, most other places fill up.
+   !> Tells whether a square matrix is solved faster as sparse. With many entries in a row, most zeros fill up during
+   !> the elimination.
    pure logical function is_sparse_better(n, entries)
       integer, intent(in) :: n               !< rows of the matrix
-      integer, intent(in) :: entries         !< those that are not always zero
+      integer, intent(in) :: entries         !< elements of the matrix that are not always zero
 
       is_sparse_better = n >= min_sparse .and. entries/max(n, 1) < 8 + n/50
    end function is_sparse_better
 
-   !> Counts the numbers that the matrix takes.
+   !> Counts the numbers that a matrix takes in memory.
    elemental integer function entries_of(shape)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
 
       entries_of = shape%entries
       if (shape%pattern == 0) entries_of = shape%rows*shape%n
@@ -57,20 +59,20 @@ contains
 
    !> Counts the numbers that the workspace of `solve_first` takes.
    elemental integer function work_length(shape)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
 
       work_length = merge(4*shape%n, shape%n*(panel + 4) + shape%rows, shape%rows == shape%n)
    end function work_length
 
-   !> Factors a matrix and solves its equations, in the sense of least squares if rows are more than unknowns. A sparse
-   !> matrix has its factors in `sparse` until `release`.
+   !> Factors a matrix and solves its equations, in the sense of least squares if there are more rows than unknowns. The
+   !> factors of a sparse matrix stay in `sparse` until `release`.
    subroutine solve_first(shape, a, pivots, work, right, info, patterns, sparse)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
       real(wp), intent(inout) :: a(*)        !< (entries_of) the matrix; a dense one becomes its factors
       real(wp), intent(inout) :: work(*)     !< (work_length) kept for the calls that follow
-      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n become the solution
+      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n numbers become the solution
       integer, intent(out) :: pivots(*)      !< (n) kept for the calls that follow
-      integer, intent(out) :: info           !< 0; above 0: exactly singular, and there is no solution
+      integer, intent(out) :: info           !< 0; above 0: exactly singular, `right` is no solution
       type(pattern_t), intent(in), optional :: patterns(:)   !< (patterns) of a sparse matrix: `shape` has the number
       type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: i
@@ -96,13 +98,13 @@ contains
       end if
    end subroutine solve_first
 
-   !> Solves the equations for another right-hand side, from the factors.
+   !> Solves equations with the factors of their matrix for another right-hand side.
    subroutine solve_again(shape, a, pivots, work, right, sparse)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
-      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n become the solution
+      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n numbers become the solution
       type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: info
 
@@ -127,15 +129,15 @@ contains
       end if
    end subroutine solve_again
 
-   !> Finds the smallest and the largest pivot from the factors, and the sign of the determinant. KLU may have chosen
-   !> other pivots than LAPACK: of a sparse matrix, 0 and the largest entry are in their place.
+   !> Finds the sizes of the smallest and the largest pivot, and the sign of the determinant, from the factors of a
+   !> matrix. For a sparse matrix the sizes are 0 and the largest |entry|: KLU may have chosen other pivots than LAPACK.
    subroutine pivot_range(shape, a, pivots, least, largest, sign_of, sparse)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix; of a sparse one, its entries
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
-      real(wp), intent(out) :: least         !< the size of the smallest pivot
-      real(wp), intent(out) :: largest       !< the size of the largest pivot
-      integer, intent(out) :: sign_of        !< 1 or -1; 1 if there is no determinant
+      real(wp), intent(out) :: least         !< size of the smallest pivot; 0 if sparse, huge if n = 0
+      real(wp), intent(out) :: largest       !< size of the largest pivot; if sparse, largest |entry|
+      integer, intent(out) :: sign_of        !< 1 or -1; 1 if rows are more than unknowns
       type(sparse_factors_t), intent(in), optional :: sparse   !< of a sparse matrix: its factors
       real(wp) :: pivot
       integer :: i
@@ -159,13 +161,14 @@ contains
       if (shape%rows > shape%n) sign_of = 1
    end subroutine pivot_range
 
-   !> Gives |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2). If it is
-   !> no finite number, the result is huge(norm).
+   !> Gives |A^-1| in the maximum norm, from the factors of A: exact for up to two equations, else an estimate (DLACN2;
+   !> Higham, ACM TOMS 14 (1988) 381). With more rows than unknowns A is the triangle of its QR factors. An estimate
+   !> that is no finite number becomes huge(norm).
    real(wp) function inverse_norm(shape, a, pivots, work, iwork, sparse) result(norm)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
-      real(wp), intent(inout) :: work(*)     !< (work_length) what the next `solve_again` needs stays
+      real(wp), intent(inout) :: work(*)     !< (work_length) the part that `solve_again` needs stays
       integer, intent(inout) :: iwork(*)     !< (n) scratch
       type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: asks, state(3), info
@@ -200,9 +203,10 @@ contains
       if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
-   !> Finds |A^-1| times a vector, from the factors, column by column: how far errors of the right-hand side go.
+   !> Bounds the unknowns by |A^-1| times bounds of the right-hand side, from the factors of A, column by column. With
+   !> more rows than unknowns A^-1 is the inverse in the sense of least squares.
    subroutine spread_by_inverse(shape, a, pivots, work, bounds, spread, sparse)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< of the matrix
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
@@ -221,13 +225,14 @@ contains
       end do
    end subroutine spread_by_inverse
 
-   !> Prepares the solution of a matrix near one that is factored. If the two differ too much, it is factored itself.
+   !> Prepares the solution of equations whose matrix is near a factored matrix. If both differ too much, the near
+   !> matrix must be factored itself.
    pure subroutine stay_near(shape, a, pivots, change, near)
       type(matrix_layout_t), intent(in) :: shape     !< with two rows and two unknowns; otherwise nothing is done
-      real(wp), intent(in) :: a(*)           !< (4) the factors, by columns
-      real(wp), intent(in) :: change         !< bound of its change in the maximum norm, added to earlier ones
+      real(wp), intent(in) :: a(*)           !< (4) factors of the factored matrix, by columns
+      real(wp), intent(in) :: change         !< bound of the change since the last call (maximum norm)
       integer, intent(in) :: pivots(*)       !< (2) as `solve_first` left them
-      type(nearby_t), intent(inout) :: near  !< its distance grows; 0: not to be used
+      type(nearby_t), intent(inout) :: near  !< gets factors, inverse, distance; 0: factor it itself
 
       if (shape%n /= 2 .or. shape%rows /= 2) return
       near%factors = a(:4)
@@ -239,11 +244,11 @@ contains
       if (.not. near%distance <= max_distance) near%distance = 0.0_wp
    end subroutine stay_near
 
-   !> Solves the equations of a nearby matrix with the inverse of the factored one, by iterative refinement (Higham,
-   !> Accuracy and Stability of Numerical Algorithms, 2002, ch. 12). Each pass takes the error down by the distance of
-   !> the two, to that of a factorization of its own.
+   !> Solves the equations of a nearby matrix with the inverse of the factored matrix, by iterative refinement (Higham,
+   !> Accuracy and Stability of Numerical Algorithms, 2002, ch. 12). Each pass multiplies the relative error by the
+   !> distance of the two matrices, until a factorization of the nearby matrix would have as much error.
    pure subroutine solve_nearby(near, right)
-      type(nearby_t), intent(in) :: near
+      type(nearby_t), intent(in) :: near     !< the matrix, with a distance above 0
       real(wp), intent(inout) :: right(2)    !< the right-hand side, then the solution
       real(wp) :: x(2), error
 

@@ -1,8 +1,8 @@
-!> Large sparse matrices by KLU (Davis and Palamadai Natarajan, ACM TOMS 37, 2010; part of SuiteSparse):
-!> the part of its C interface that is used.
+!> Large sparse matrices by KLU (Davis and Palamadai Natarajan, ACM TOMS 37, 2010; part of SuiteSparse): the part of
+!> KLU's C interface that is used.
 !>
-!> Columns in the order of COLAMD and rows by true partial pivoting, as in LAPACK: KLU's own choices, which take a pivot
-!> on the diagonal a thousand times smaller than another, lose six digits on nets of rods.
+!> Columns are in the order of COLAMD, rows by true partial pivoting, as in LAPACK. KLU's own choices take a pivot on
+!> the diagonal that is a thousand times smaller than another: they lose six digits on nets of rods.
 module klu
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_size_t, c_ptr, c_funptr, c_null_ptr, c_loc, c_associated, &
       c_f_pointer
@@ -15,14 +15,14 @@ module klu
    !> KLU knows double precision only.
    logical, parameter :: klu_serves = kind(1.0_wp) == c_double
 
-   !> The entries of column k are in the rows row(first(k) + 1), ..., row(first(k + 1)); rows and `first` count from 0.
-   !> `order`: the columns, from 0, in the order in which they are eliminated; of rows that serve as well the first in
-   !> this order is the pivot's.
+   !> Which elements of a square matrix can differ from zero. The entries of column k are in the rows row(first(k) + 1),
+   !> ..., row(first(k + 1)); rows and `first` (columns + 1) count from 0. `order`: the columns, from 0, in the order of
+   !> elimination; of rows with equally large pivots the first in this order is taken.
    type :: pattern_t
       integer(c_int), allocatable :: first(:), row(:), order(:)
    end type pattern_t
 
-   !> klu_common of klu.h, with room for a longer one.
+   !> klu_common of klu.h, with room for a longer structure of later releases.
    type, bind(c) :: common_t
       real(c_double) :: tol = 0, memgrow = 0, initmem_amd = 0, initmem = 0, maxwork = 0
       integer(c_int) :: btf = 0, ordering = 0, scale = 0
@@ -67,55 +67,55 @@ module klu
    integer(c_int), parameter :: colamd = 1, unscaled = -1
 
    interface
-      !> Sets the default parameters. The result is 1, or 0 for an error.
+      !> Sets the default parameters of KLU. The result is 1, or 0 for an error.
       integer(c_int) function klu_defaults(common) bind(c)
          import :: c_int, common_t
-         type(common_t), intent(inout) :: common
+         type(common_t), intent(inout) :: common   !< becomes the default parameters
       end function klu_defaults
-      !> Orders the pattern: block triangular form, then COLAMD or AMD. The result is the ordering, null for an error.
+      !> Orders a pattern: block triangular form, then COLAMD or AMD. The result is the ordering, null for an error.
       type(c_ptr) function klu_analyze(n, ap, ai, common) bind(c)
          import :: c_int, c_ptr, common_t
          integer(c_int), value :: n           !< rows of the matrix
          integer(c_int), intent(in) :: ap(*)  !< (n + 1) `first` of the pattern
          integer(c_int), intent(in) :: ai(*)  !< (entries) `row` of the pattern
-         type(common_t), intent(inout) :: common
+         type(common_t), intent(inout) :: common   !< parameters; gets the status of the call
       end function klu_analyze
-      !> Factors with pivoting. The result is the factors, null for an error or an exactly singular matrix.
+      !> Factors a matrix with pivoting. The result is the factors, null for an error or an exactly singular matrix.
       type(c_ptr) function klu_factor(ap, ai, ax, symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
          integer(c_int), intent(in) :: ap(*)  !< (n + 1) `first` of the pattern
          integer(c_int), intent(in) :: ai(*)  !< (entries) `row` of the pattern
          type(c_ptr), value :: ax             !< (entries) the matrix
-         type(c_ptr), value :: symbolic       !< its ordering
-         type(common_t), intent(inout) :: common
+         type(c_ptr), value :: symbolic       !< the ordering of its pattern
+         type(common_t), intent(inout) :: common   !< parameters; gets the status of the call
       end function klu_factor
-      !> Solves A x = right in place. The result is 1, or 0 for an error.
+      !> Solves A x = right in place with the factors of A. The result is 1, or 0 for an error.
       integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, right, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), value :: symbolic       !< the ordering
          type(c_ptr), value :: numeric        !< the factors
          type(c_ptr), value :: right          !< (ldim, nrhs) right-hand sides, then solutions
-         integer(c_int), value :: ldim        !< distance of two right-hand sides
+         integer(c_int), value :: ldim        !< distance of two right-hand sides, in numbers
          integer(c_int), value :: nrhs        !< how many right-hand sides
-         type(common_t), intent(inout) :: common
+         type(common_t), intent(inout) :: common   !< parameters; gets the status of the call
       end function klu_solve
-      !> Frees the ordering. The result is 1, or 0 for an error.
+      !> Frees an ordering. The result is 1, or 0 for an error.
       integer(c_int) function klu_free_symbolic(symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), intent(inout) :: symbolic   !< becomes null
-         type(common_t), intent(inout) :: common
+         type(common_t), intent(inout) :: common   !< parameters; gets the status of the call
       end function klu_free_symbolic
    end interface
-   !> Solves A' x = right in place, with the transposed matrix.
+   !> Solves A' x = right in place with the factors of A. The result is 1, or 0 for an error.
    procedure(klu_solve), bind(c) :: klu_tsolve
-   !> Frees the factors.
+   !> Frees the factors of a matrix. The result is 1, or 0 for an error.
    procedure(klu_free_symbolic), bind(c) :: klu_free_numeric
 
 contains
 
-   !> Finds the order of elimination of a pattern: the columns by COLAMD, so that the factors fill up little.
+   !> Finds the order of elimination of a pattern by COLAMD, so that few zeros fill up in the factors.
    subroutine order_columns(pattern)
-      type(pattern_t), intent(inout) :: pattern
+      type(pattern_t), intent(inout) :: pattern   !< square; gets its `order`
       type(common_t) :: common
       type(c_ptr) :: symbolic
       type(symbolic_t), pointer :: found
@@ -131,9 +131,10 @@ contains
       done = klu_free_symbolic(symbolic, common)
    end subroutine order_columns
 
-   !> Sets the parameters of KLU: columns by COLAMD, true partial pivoting. The blocks of a mechanism are known already.
+   !> Sets the parameters of KLU: columns by COLAMD, true partial pivoting, and no search for blocks, which the
+   !> structure of a mechanism has found already.
    subroutine set_common(common)
-      type(common_t), intent(inout) :: common
+      type(common_t), intent(inout) :: common   !< the parameters; its room for results is emptied
       integer(c_int) :: done
 
       done = klu_defaults(common)
@@ -143,12 +144,12 @@ contains
       common%btf = 0
    end subroutine set_common
 
-   !> Factors a matrix. Rejected: to take the pivots of the matrix before while they serve. It halves the time of large
-   !> matrices, but digits then depend on the way there.
+   !> Factors a sparse matrix. Rejected: the pivots of the previous matrix as long as they are large enough. They halve
+   !> the time of large matrices, but digits then depend on earlier matrices.
    subroutine factor(pattern, a, factors, info)
-      type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in), target :: a(*)   !< (entries) of the pattern, column by column
-      type(sparse_factors_t), intent(inout), target :: factors
+      type(pattern_t), intent(in) :: pattern !< of the matrix, ordered
+      real(wp), intent(in), target :: a(*)   !< (entries of the pattern) the matrix, column by column
+      type(sparse_factors_t), intent(inout), target :: factors   !< become those of the matrix; earlier ones are freed
       integer, intent(out) :: info           !< 0; above 0: exactly singular, no factors
       integer(c_int) :: n
 
@@ -160,7 +161,7 @@ contains
       factors%symbolic%maxblock = n
       factors%symbolic%nz = size(pattern%row, kind=c_int)
       factors%symbolic%lnz_of = c_loc(unknown)
-      ! Of one block nothing is off its diagonal.
+      ! In one block no entry is outside the diagonal blocks.
       factors%symbolic%p = c_loc(factors%order)
       factors%symbolic%q = factors%symbolic%p
       factors%symbolic%r = c_loc(factors%order(n + 1))
@@ -168,20 +169,20 @@ contains
       info = merge(0, 1, c_associated(factors%numeric))
    end subroutine factor
 
-   !> Frees the factors, if there are any.
+   !> Frees the factors of a sparse matrix, if there are any.
    subroutine release(factors)
-      type(sparse_factors_t), intent(inout) :: factors
+      type(sparse_factors_t), intent(inout) :: factors   !< there are none then
       integer(c_int) :: done
 
       if (c_associated(factors%numeric)) done = klu_free_numeric(factors%numeric, factors%common)
       factors%numeric = c_null_ptr
    end subroutine release
 
-   !> Solves the equations for a right-hand side, from the factors.
+   !> Solves equations with the factors of their sparse matrix.
    subroutine solve(factors, right, transposed)
-      type(sparse_factors_t), intent(inout), target :: factors
+      type(sparse_factors_t), intent(inout), target :: factors   !< of the matrix, as `factor` left them
       real(wp), intent(inout), target :: right(*)   !< (n) the right-hand side, then the solution
-      logical, intent(in) :: transposed      !< with the transposed matrix
+      logical, intent(in) :: transposed      !< of the equations with the transposed matrix
       integer(c_int) :: done
 
       associate (symbolic => c_loc(factors%symbolic), n => factors%symbolic%n)
@@ -190,9 +191,9 @@ contains
       end associate
    end subroutine solve
 
-   !> Finds the sign of the determinant, from the factors.
+   !> Finds the sign of the determinant of a sparse matrix, 1 or -1, from its factors.
    integer function determinant_sign(numbers) result(sign_of)
-      type(sparse_factors_t), intent(in) :: numbers
+      type(sparse_factors_t), intent(in) :: numbers   !< the factors, as `factor` left them
       type(numeric_t), pointer :: factors
       integer(c_int), pointer :: pivot_row(:)
       real(c_double), pointer :: pivots(:)
@@ -204,9 +205,9 @@ contains
       if (mod(count(pivots < 0.0_c_double), 2) == 1) sign_of = -sign_of
    end function determinant_sign
 
-   !> Finds the sign of a permutation: a cycle of length c is c - 1 exchanges.
+   !> Finds the sign of a permutation, 1 or -1: a cycle of length c is c - 1 exchanges.
    pure integer function sign_of_permutation(permutation) result(sign_of)
-      integer(c_int), intent(in) :: permutation(:)   !< (n) of 0 to n - 1
+      integer(c_int), intent(in) :: permutation(:)   !< (n) each of 0 to n - 1 once
       logical :: is_seen(size(permutation))
       integer :: i, next
 

@@ -1,4 +1,4 @@
-!> The routines of LAPACK under the names that they have for every kind: LAPACK's own or, for real128, ours.
+!> The routines of LAPACK under one name for every kind of reals: LAPACK's own or, for real128, KINMAT's.
 #define SAME(text) text
 #define OF_KIND(name) name=>SAME(LETTER)SAME(name)
 module lapack

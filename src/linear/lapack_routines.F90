@@ -1,5 +1,5 @@
-!> The routines of LAPACK that are used, and nothing else of it; LETTER is that of the kind, s or d. For
-!> real128 LAPACK has none, and `lapack` takes our own.
+!> The routines of LAPACK that are used; LETTER is s or d, the letter of the kind of reals. Their arguments are those of
+!> LAPACK's documentation. LAPACK has no routines for real128: `lapack` then takes KINMAT's own.
 #define SAME(text) text
 #define NAMED(name) SAME(LETTER)SAME(name)
 module lapack_routines
@@ -11,15 +11,15 @@ module lapack_routines
    public
 
    interface
-      !> Factors a complex matrix by LU with partial pivoting, column by column: a small one in half of the time of
-      !> ZGETRF. In double precision, whatever the kind of reals.
+      !> Factors a complex matrix by LU with partial pivoting, column by column: a small matrix in half of the time of
+      !> ZGETRF. The precision is double, for any kind of reals.
       subroutine zgetf2(m, n, a, lda, ipiv, info)
          import :: dp
          integer, intent(in) :: m, n, lda
          complex(dp), intent(inout) :: a(lda, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine zgetf2
-      !> Solves equations with the factors of zgetf2.
+      !> Solves complex equations with the factors of zgetf2.
       subroutine zgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: dp
          character(1), intent(in) :: trans
@@ -59,7 +59,7 @@ module lapack_routines
          real(wp), intent(inout) :: v(*), x(*), est
          integer, intent(inout) :: isgn(*), kase, isave(3)
       end subroutine NAMED(lacn2)
-      !> Solves a positive definite tridiagonal system.
+      !> Solves equations with a positive definite tridiagonal matrix.
       subroutine NAMED(ptsv)(n, nrhs, d, e, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, ldb
@@ -74,7 +74,7 @@ module lapack_routines
          real(wp), intent(out) :: tau(*)
          integer, intent(out) :: info
       end subroutine NAMED(geqrf)
-      !> Multiplies by the orthogonal factor of geqrf.
+      !> Multiplies a matrix by the orthogonal factor of geqrf.
       pure subroutine NAMED(ormqr)(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
          import :: wp
          character(1), intent(in) :: side, trans
@@ -83,7 +83,7 @@ module lapack_routines
          real(wp), intent(inout) :: c(ldc, *), work(*)
          integer, intent(out) :: info
       end subroutine NAMED(ormqr)
-      !> Solves a triangular system.
+      !> Solves equations with a triangular matrix.
       subroutine NAMED(trtrs)(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
          import :: wp
          character(1), intent(in) :: uplo, trans, diag

@@ -1,5 +1,5 @@
-!> DGESV in its two halves, so that the factors of the Jacobian that ended Newton's iteration serve
-!> velocity and acceleration as well.
+!> DGESV in its two halves, DGETRF and DGETRS: the factors of the Jacobian that ended Newton's iteration serve velocity
+!> and acceleration as well.
 module linear_solver
    use kinds, only: wp
    use lapack, only: getrf, getrs
@@ -11,14 +11,14 @@ module linear_solver
    type :: factors_t
       integer :: n = 0
       real(wp), allocatable :: a(:, :)     !< (n, n): the matrix, then its factors
-      integer, allocatable :: pivots(:)    !< (n)
+      integer, allocatable :: pivots(:)    !< (n) row exchanges
    end type factors_t
 
 contains
 
-   !> Makes room for a square matrix.
+   !> Makes room for a square matrix, and fills the matrix with zeros.
    pure function new_factors(n) result(f)
-      integer, intent(in) :: n   !< its rows
+      integer, intent(in) :: n   !< rows of the matrix, 0 or more
       type(factors_t) :: f
 
       f%n = n
@@ -26,18 +26,18 @@ contains
       allocate (f%pivots(n), source=0)
    end function new_factors
 
-   !> Factors the matrix in place.
+   !> Factors a square matrix in place.
    subroutine factor(factors, info)
-      type(factors_t), intent(inout) :: factors
+      type(factors_t), intent(inout) :: factors   !< holds the matrix, then the factors
       integer, intent(out) :: info   !< 0; above 0: exactly singular, the pivot of that number is zero
 
       info = 0
       if (factors%n > 0) call getrf(factors%n, factors%n, factors%a, factors%n, factors%pivots, info)
    end subroutine factor
 
-   !> Solves the equations for a right-hand side, from the factors.
+   !> Solves equations with the factors of their square matrix.
    subroutine solve(factors, right)
-      type(factors_t), intent(in) :: factors
+      type(factors_t), intent(in) :: factors !< as `factor` left them
       real(wp), intent(inout) :: right(:)   !< (n) the right-hand side, then the solution
       integer :: info
 
