@@ -13,15 +13,15 @@ module cylinders
    type :: cylinder_t
       integer :: pair = 0                    !< its number
       integer :: i = 0, j = 0                !< the numbers of its links
-      real(wp) :: p(2) = 0.0_wp, q(2) = 0.0_wp   !< its points in the axes of their links
-      real(wp) :: along(2) = 0.0_wp          !< the direction of the guide in the axes of link i
+      real(wp) :: p(2) = 0.0_wp, q(2) = 0.0_wp   !< points P of link i and Q of link j, in the axes of their links
+      real(wp) :: along(2) = 0.0_wp          !< unit vector from P along the guide, in the axes of link i
       real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< its least and greatest length
-      real(wp) :: bounds(2) = [0.0_wp, huge(1.0_wp)]   !< between them its length stays in a motion that is followed
+      real(wp) :: bounds(2) = [0.0_wp, huge(1.0_wp)]   !< its length stays between them in a motion
    end type cylinder_t
 
 contains
 
-   !> Finds the cylinders of a mechanism.
+   !> Finds the cylinders (any number) of a mechanism.
    pure function cylinders_of(m, by_stroke) result(list)
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: by_stroke       !< strokes bound the lengths; otherwise lengths are only above 0
@@ -39,18 +39,19 @@ contains
       end do
    end function cylinders_of
 
-   !> Finds the length of a cylinder, below 0 if Q lies behind P.
+   !> Finds the length of a cylinder: the slide from P to Q, in the deck's unit; below 0 if Q lies on the other side of
+   !> P.
    pure real(wp) function cylinder_length(one, link_i, link_j) result(length)
-      type(cylinder_t), intent(in) :: one
-      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
+      type(cylinder_t), intent(in) :: one    !< the cylinder
+      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length), phi (rad) of links i and j
 
       length = dot_product(rotated(one%along, direction(link_i(3))), point_of(link_j, one%q) - point_of(link_i, one%p))
    end function cylinder_length
 
-   !> Finds the length of a cylinder with its derivatives (0:2).
+   !> Finds the length of a cylinder with its first two derivatives by time (0:2), in the deck's units.
    pure function cylinder_motion(one, link_i, link_j) result(length)
-      type(cylinder_t), intent(in) :: one
-      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2) !< x, y (length), phi (rad); derivatives
+      type(cylinder_t), intent(in) :: one    !< the cylinder
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2) !< x, y (length), phi (rad) of the links; derivatives
       real(wp) :: length(0:2), q(2, 0:2), r(2, 0:2), pin_offset(2)
 
       q = link_j(:2, :)
@@ -61,10 +62,11 @@ contains
       length = matmul(one%along, r)
    end function cylinder_motion
 
-   !> Tells whether a length stays within bounds between two instants, but for rounding: a cylinder may be drawn or held
-   !> at an end of its stroke. Its motion is taken as the cubic that has the values and rates of both instants.
+   !> Tells whether the length of a cylinder stays within bounds from one instant to another, but for rounding: a
+   !> cylinder may be drawn or fixed at an end of its stroke. The motion between the instants is taken as the cubic with
+   !> the lengths and rates of both.
    pure logical function stays_within(bounds, first, last, time) result(stays)
-      real(wp), intent(in) :: bounds(2)      !< least and greatest length
+      real(wp), intent(in) :: bounds(2)      !< least and greatest length, in the deck's unit
       real(wp), intent(in) :: first(0:1), last(0:1)   !< length and its rate at the first and at the last instant
       real(wp), intent(in) :: time           !< from the first to the last instant, in the deck's unit
       real(wp) :: c(0:3), u(2), discriminant
@@ -74,7 +76,7 @@ contains
       if (.not. stays) return
       c = [first(0), time*first(1), 3.0_wp*(last(0) - first(0)) - time*(2.0_wp*first(1) + last(1)), &
          2.0_wp*(first(0) - last(0)) + time*(first(1) + last(1))]
-      ! Its least and greatest value: c1 + 2 c2 u + 3 c3 u**2 = 0, by the form that loses no digits.
+      ! The cubic has its extremes where c1 + 2 c2 u + 3 c3 u**2 = 0, solved by the form that loses no digits.
       discriminant = c(2)**2 - 3.0_wp*c(1)*c(3)
       if (discriminant < 0.0_wp) return
       discriminant = -(c(2) + sign(sqrt(discriminant), c(2)))
@@ -89,9 +91,9 @@ contains
       end do
    end function stays_within
 
-   !> Tells whether a length is beyond a stroke by more than rounding.
+   !> Tells whether the length of a cylinder is beyond a stroke by more than rounding.
    pure logical function is_out_of_stroke(stroke, length) result(is)
-      real(wp), intent(in) :: stroke(2)      !< least and greatest length
+      real(wp), intent(in) :: stroke(2)      !< least and greatest length, in the deck's unit
       real(wp), intent(in) :: length         !< of the cylinder, in the deck's unit
 
       is = length < stroke(1)*(1.0_wp - rounded) .or. length > stroke(2) + rounded*min(stroke(2), length)

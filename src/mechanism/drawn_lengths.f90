@@ -1,6 +1,6 @@
-!> A drawing with dimensions: LENGTH cards say how far points of a link are apart that the drawing shows about there,
-!> and axes of links begin at one of its joints and point to another one. All ground links are one body. The points that
-!> are drawn at one place of a body are one hole, which moves as one.
+!> A drawing with dimensions. LENGTH cards give exact distances between points of a link that the drawing shows
+!> approximately. Axes of links can begin at a joint of the link and point to another joint. All ground links are one
+!> body. The points that are drawn at one position of a body are one hole, which moves as a whole.
 module drawn_lengths
    use kinds, only: wp
    use plane_vectors, only: pi, direction, rotated, point_of, cross
@@ -9,19 +9,20 @@ module drawn_lengths
    private
    public :: reach_t, body_of, join_hole, is_movable, set_axes, apply_lengths, same_place_tolerance
 
-   !> What LENGTH cards make of one hole.
+   !> The faults of the LENGTH cards of one hole, if there are any.
    type :: reach_t
-      logical :: has_two = .false.           !< it has two lengths
-      real(wp) :: missing = 0.0_wp           !< length by which the two circles do not meet; 0: they do
-      logical :: has_no_side = .false.       !< it is drawn in line with both other points, or at the place of one
+      logical :: has_two = .false.           !< two LENGTH cards give its position
+      real(wp) :: missing = 0.0_wp           !< length by which the two circles do not meet; 0: they meet
+      logical :: has_no_side = .false.       !< drawn in line with both other points; with one length: drawn at P
    end type reach_t
 
-   !> Places that other programs have printed, or that several sums give, differ by less, as a part of their distances.
+   !> Two positions are one if they differ by less than this part of their distances from the origin: by the roundings
+   !> of several sums, or of another program that printed them.
    real(wp), parameter :: same_place_tolerance = 64.0_wp*epsilon(1.0_wp)
 
 contains
 
-   !> Finds the body of a point: the number of its link; 0: of the ground.
+   !> Finds the body of a point: the number of the point's link; 0 if the link is ground.
    pure integer function body_of(m, i) result(body)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the point
@@ -30,7 +31,8 @@ contains
       if (m%links(body)%ground) body = 0
    end function body_of
 
-   !> Tells whether the drawing shows where a point is: not of a POINT card whose coordinates count from a bar.
+   !> Tells whether a length may move a point: the drawing gives its position. A POINT card of a link with axes along a
+   !> bar gives exact coordinates instead.
    pure logical function is_movable(m, i)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the point
@@ -38,8 +40,8 @@ contains
       is_movable = m%points(i)%drawn .or. m%links(m%points(i)%link)%from == 0
    end function is_movable
 
-   !> Gives the points that are drawn at the place of a point, on its body, the same number `hole`, and all of them
-   !> their places in the drawing.
+   !> Joins to one hole all movable points of a body that are drawn at the position of one point: all get one number
+   !> `hole` and one position in the drawing. If the point has a hole already, nothing changes.
    pure subroutine join_hole(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< the number of the point
@@ -58,7 +60,8 @@ contains
       end do
    end subroutine join_hole
 
-   !> Finds the place (2) of a point in the drawing, if no length has moved it.
+   !> Finds the position x, y (2) of a point in the drawing, in the deck's unit of length, if no length has moved the
+   !> point.
    pure function place_on_card(m, i) result(place)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the point
@@ -68,11 +71,11 @@ contains
       if (.not. m%points(i)%drawn) place = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
    end function place_on_card
 
-   !> Gives links whose axes begin at FROM and point to TO these axes, in (-pi, pi], and all points of JOINT cards and
-   !> of holes that lengths move their places in the axes of their links.
+   !> Computes the axes of each link that begin at FROM and point to TO, with the angle in (-pi, pi]. Then computes xi
+   !> and eta of all points of JOINT cards, and of all points that lengths have moved, in the axes of their links.
    pure subroutine set_axes(m, place)
       type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: place(:, :)    !< (2, points) places of these points in the drawing
+      real(wp), intent(in) :: place(:, :)    !< (2, points) x, y of all points in the drawing, length
       real(wp) :: axes(3)
       integer :: i, k
 
@@ -85,6 +88,7 @@ contains
             where (link%along) link%position = axes
          end associate
       end do
+
       do i = 1, size(m%points)
          associate (point => m%points(i))
             if (point%link == 0 .or. .not. (point%drawn .or. point%moves)) cycle
@@ -92,7 +96,8 @@ contains
                direction(-m%links(point%link)%position(3)))
          end associate
       end do
-      ! The end of a bar lies on its axis, where its length says, without a rounding.
+
+      ! The end of a bar with a length lies exactly on its axis, at this length: without a rounding.
       if (.not. allocated(m%lengths)) return
       do i = 1, size(m%lengths)
          associate (p => m%points(m%lengths(i)%point(1)), q => m%points(m%lengths(i)%point(2)))
@@ -109,13 +114,15 @@ contains
       end do
    end subroutine set_axes
 
-   !> Puts the lengths of `m` into the drawing, in their order: moves the hole of point Q of each, along the line from P
-   !> or, if the next length has the same hole, to the intersection of two circles on the side on which it is drawn.
-   !> Axes and points follow. Numbers that are as drawn do not. An intersection that was found before and has other
-   !> lengths now goes on by one step of Newton's method: differences of such places have no error of the root.
+   !> Applies the lengths of a mechanism to its drawing, in their order. Each length moves the hole of its point Q along
+   !> the line from P. If the next length has the same hole, the hole moves to the intersection of two circles, on the
+   !> side on which the hole is drawn. Axes and points follow; numbers as drawn do not.
+   !>
+   !> If an earlier call has found the intersection and the lengths have changed, the new one is found by one step of
+   !> Newton's method: differences of positions then have no rounding of the square root.
    pure subroutine apply_lengths(m, reached)
       type(mechanism_t), intent(inout) :: m
-      type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
+      type(reach_t), intent(out), optional :: reached(:)   !< (lengths) faults of each hole, at its first length
       type(reach_t) :: reach
       real(wp) :: place(2, size(m%points)), q(2), way(2), ray(2, 2), open(2)
       integer :: i, k, lengths
@@ -133,7 +140,8 @@ contains
             is_one = k == lengths .or. next%hole(2) /= one%hole(2)
             reach = reach_t(has_two=.not. is_one)
             q = m%points(one%point(2))%place
-            ! A length alone keeps its direction.
+
+            ! With one length the hole keeps its direction from P.
             if (is_one) then
                way = q - place(:, one%point(1))
                reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(place(:, one%point(1))))
@@ -151,6 +159,7 @@ contains
                   end if
                end associate
             end if
+
             do i = 1, size(m%points)
                if (m%points(i)%hole /= one%hole(2)) cycle
                place(:, i) = q
@@ -163,13 +172,13 @@ contains
       call set_axes(m, place)
    end subroutine apply_lengths
 
-   !> Finds the intersection of two circles that is nearest to a place. If they do not meet, it is a place on the line
-   !> through their centres.
+   !> Finds that intersection of two circles that lies on the side of a point. If the circles do not meet, the result is
+   !> a point on the line through their centres, and `missing` is above 0. Concentric circles leave the point.
    pure subroutine find_intersection(centre, radius, place, reach)
-      real(wp), intent(in) :: centre(2, 2)   !< (coordinates, circles)
-      real(wp), intent(in) :: radius(2)      !< length
-      real(wp), intent(inout) :: place(2)    !< the place; becomes the intersection
-      type(reach_t), intent(inout) :: reach
+      real(wp), intent(in) :: centre(2, 2)   !< (coordinates, circles) in the deck's unit of length
+      real(wp), intent(in) :: radius(2)      !< (circles) in the deck's unit of length
+      real(wp), intent(inout) :: place(2)    !< x, y of the point (length); becomes the intersection
+      type(reach_t), intent(inout) :: reach  !< gets `missing` and `has_no_side`
       real(wp) :: way(2), e(2), d, along, square, side
 
       way = centre(:, 2) - centre(:, 1)
@@ -180,7 +189,7 @@ contains
       e = way/d
       along = 0.5_wp*(d + (radius(1) - radius(2))*((radius(1) + radius(2))/d))
       square = (radius(1) - along)*(radius(1) + along)
-      ! They touch but for rounding.
+      ! The circles touch but for rounding.
       if (square <= same_place_tolerance*radius(1)**2) square = 0.0_wp
       side = cross(e, place - centre(:, 1))
       reach%has_no_side = square > 0.0_wp .and. &

@@ -1,5 +1,5 @@
-!> The values of a drawing: the numbers of pairs and the values of drives, with the links where the cards put them. With
-!> JOINT cards a blank number means "as drawn".
+!> The values of a drawing: the numbers of pairs and the values of drives for the positions of links on their cards. In
+!> a deck with JOINT cards a blank number means "as drawn".
 module drawn_values
    use kinds, only: wp
    use plane_vectors, only: point_of, pi
@@ -10,17 +10,18 @@ module drawn_values
    public :: complete_from_drawing, drawn_place, drawn_drive, drawn_way, drawn_closure_error, coincides
 
    !> A relative difference below this is zero. A coordinate passes through about ten operations, each with an error of
-   !> half a rounding of the places involved; coordinates that another program has printed are off by one or two more.
+   !> half a rounding of the coordinates involved; coordinates that another program has printed are off by one or two
+   !> roundings more.
    real(wp), parameter :: drawing_error = 32.0_wp*epsilon(1.0_wp)
 
 contains
 
-   !> Gives a prismatic pair those of its numbers alpha (rad), h (length) and beta (rad) that are as drawn.
+   !> Computes those of the numbers alpha (rad), h (length) and beta (rad) of a prismatic pair that are as drawn.
    !>
-   !> - Along a guide that is drawn from P to Q, alpha is the direction of PQ, in (-pi, pi], less the angle of link i; h
-   !>   is 0.
-   !> - Differences due to rounding only become exactly 0.
-   !> - The block of a slot is put at the place of the pin in the drawing, with the angle of link i.
+   !> - If alpha is as drawn, the guide runs from P to Q: alpha is the direction of PQ, in (-pi, pi], less the angle of
+   !>   link i, and h is 0.
+   !> - Differences that are only rounding become exactly 0.
+   !> - The block of a slot gets the position of the pin in the drawing, with the angle of link i.
    pure subroutine complete_from_drawing(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< number of the pair
@@ -45,10 +46,11 @@ contains
       m%pairs(i) = pair
    end subroutine complete_from_drawing
 
-   !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (length).
+   !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (eq. 9), in
+   !> the deck's unit of length; exactly 0 if it is only rounding.
    pure real(wp) function drawn_closure_error(m, pair) result(closure_error)
       type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
+      type(pair_t), intent(in) :: pair       !< of `m`
       integer :: links(2)
 
       links = pair_links(m, pair)
@@ -56,10 +58,10 @@ contains
       closure_error = without_rounding(closure_error, size_of_pair(m, pair) + abs(pair%offset))
    end function drawn_closure_error
 
-   !> Finds the value (length or rad) of the coordinate of a drive in the drawing.
+   !> Finds the value (length or rad) of the coordinate of a drive in the drawing; exactly 0 if it is only rounding.
    pure real(wp) function drawn_drive(m, drive) result(value)
       type(mechanism_t), intent(in) :: m
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< of `m`
       real(wp) :: p(2)
 
       associate (k => drive%subject)
@@ -84,7 +86,7 @@ contains
    !> Finds the vector (2) from P to Q of a pair in the drawing, in the deck's unit of length.
    pure function drawn_way(m, pair) result(d)
       type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
+      type(pair_t), intent(in) :: pair       !< of `m`
       real(wp) :: d(2)
 
       associate (links => pair_links(m, pair))
@@ -92,15 +94,15 @@ contains
       end associate
    end function drawn_way
 
-   !> Tells whether P and Q of a pair are at one place in the drawing.
+   !> Tells whether P and Q of a pair coincide in the drawing, but for rounding.
    pure logical function coincides(m, pair)
       type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
+      type(pair_t), intent(in) :: pair       !< of `m`
 
       coincides = .not. abs(without_rounding(norm2(drawn_way(m, pair)), size_of_pair(m, pair))) > 0.0_wp
    end function coincides
 
-   !> Finds the place (2) of a point in the drawing, in the deck's unit of length.
+   !> Finds the position x, y (2) of a point in the drawing, in the deck's unit of length.
    pure function drawn_place(m, k) result(p)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k               !< number of the point
@@ -109,7 +111,7 @@ contains
       p = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
    end function drawn_place
 
-   !> Gives the length to which the rounding error of the place of a point is relative.
+   !> Gives the length to which the rounding error of the position of a point is relative, in the deck's unit.
    pure real(wp) function size_of_point(m, k) result(length)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k               !< number of the point
@@ -119,11 +121,11 @@ contains
       end associate
    end function size_of_point
 
-   !> Gives the length to which the rounding error of the vector from P to Q of a pair is relative, along and across its
-   !> guide.
+   !> Gives the length to which the rounding error of the vector from P to Q of a pair is relative, along and across the
+   !> guide, in the deck's unit. Of a slot Q is the pin.
    pure real(wp) function size_of_pair(m, pair) result(length)
       type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
+      type(pair_t), intent(in) :: pair       !< of `m`
 
       length = size_of_point(m, pair%point_i) + size_of_point(m, merge(pair%pin, pair%point_j, pair%pin > 0)) &
          + norm2(drawn_way(m, pair)) &
@@ -133,7 +135,7 @@ contains
    !> Gives a value, or 0 if the value is within the rounding error of the numbers from which it was found.
    pure real(wp) function without_rounding(value, size_of) result(rest)
       real(wp), intent(in) :: value          !< length or rad
-      real(wp), intent(in) :: size_of        !< sum of the sizes of these numbers, in the unit of the value
+      real(wp), intent(in) :: size_of        !< sum of the sizes of these numbers, in the unit of `value`
 
       rest = merge(0.0_wp, value, abs(value) <= drawing_error*size_of)
    end function without_rounding

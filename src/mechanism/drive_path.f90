@@ -1,8 +1,8 @@
-!> The path of the drives: value, rate and acceleration of each at a parameter of the motion. The parameter is the time.
-!> On a leg the parameter stands for the value of one drive, the leader, which goes evenly from one value to another;
-!> the other drives are held. A position depends only on the values of the drives: a motion that comes to rest in time
-!> can go on by value. The parameter of a leg runs through the times between which the leader has the values of its
-!> ends.
+!> The path of the drives: value, rate and acceleration of each drive at a parameter of the motion. The parameter is the
+!> time, except on a leg. On a leg one drive, the leader, moves with a constant rate from one value to another, and the
+!> other drives are fixed. The parameter of a leg runs between the times at which the leader has the values of its ends.
+!> Reason: a position depends only on the values of the drives, and a motion that comes to rest in time can go on by
+!> value.
 module drive_path
    use assertions, only: asserts, assert
    use kinds, only: wp
@@ -13,27 +13,28 @@ module drive_path
    public :: drive_path_t, drive_at, drive_bounds, value_at, moving_drives, slow_drive, next_turn, time_beside, &
       time_at_part, lead
 
-   !> A drive is about to stop or to turn back if its rate is below this part of its largest rate.
+   !> A drive is about to stop or to turn back if its rate is below this part of its largest rate nearby.
    real(wp), parameter :: almost_at_rest = 0.1_wp
-   !> Equal steps of time on the way of a drive, at whose ends it is looked whether the drive has turned back.
+   !> Equal steps of time in which a drive is searched for a change of direction: two turns within one are not seen.
    integer, parameter :: value_steps = 64
-   !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
+   !> Pivots at the ends of a substep give the position of a change point within this part of the substep.
    real(wp), parameter :: not_told = 1.0e-3_wp
 
+   !> The laws of all drives and, on a leg, their linear motion.
    type :: drive_path_t
-      type(drive_t), allocatable :: laws(:)       !< (drives) functions of time
-      real(wp), allocatable :: unit(:)            !< (drives) factor of their values in the solver's equations
+      type(drive_t), allocatable :: laws(:)       !< (drives) with their laws, functions of time
+      real(wp), allocatable :: unit(:)            !< (drives) a value times this factor is in the solver's unit
       !> (2, drives) On a leg the values at the parameter p are leg(1, :) + leg(2, :) p; otherwise not allocated.
       real(wp), allocatable :: leg(:, :)
-      real(wp) :: span(2) = 0.0_wp                !< times of the ends of the leg
+      real(wp) :: span(2) = 0.0_wp                !< times of the beginning and the end of the leg
    end type drive_path_t
 
 contains
 
-   !> Gives value, rate and acceleration (3) of a drive at a parameter, in the drive's unit (length or rad) and the unit
-   !> of the parameter.
+   !> Gives value, rate and acceleration (3) of a drive at a parameter, in the drive's unit (length or rad) and the
+   !> deck's unit of time.
    pure function drive_at(path, i, parameter) result(f)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       integer, intent(in) :: i               !< number of the drive
       real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp) :: f(3)
@@ -48,7 +49,7 @@ contains
 
    !> Gives the values (drives) of all drives at a parameter, in the drives' units (length or rad).
    pure function values_at(path, parameter) result(values)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp) :: values(size(path%laws)), f(3)
       integer :: i
@@ -59,9 +60,10 @@ contains
       end do
    end function values_at
 
-   !> Finds the bounds of value, rate and acceleration of a drive between two parameters.
+   !> Finds true bounds of value, rate and acceleration of a drive between two parameters, in the drive's unit (length
+   !> or rad) and the deck's unit of time.
    pure type(bounds_t) function drive_bounds(path, i, p1, p2) result(b)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       integer, intent(in) :: i               !< number of the drive
       real(wp), intent(in) :: p1, p2         !< parameters of the path in either order, in the deck's unit of time
 
@@ -74,7 +76,7 @@ contains
 
    !> Gives the value (length or rad) of a drive at a time by its law, whether the path is on a leg or not.
    pure real(wp) function value_at(path, i, t)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       integer, intent(in) :: i               !< number of the drive
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
@@ -83,9 +85,10 @@ contains
       value_at = f(1)
    end function value_at
 
-   !> Tells of each drive (drives) whether it moves between two parameters, by `is_at_rest`.
+   !> Tells of each drive (drives) whether the drive moves between two parameters: on a leg only the leader does, and
+   !> off a leg each drive that is not at rest by the bounds of its rate.
    pure function moving_drives(path, p1, p2) result(moves)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       real(wp), intent(in) :: p1, p2         !< parameters of the path in either order, in the deck's unit of time
       logical :: moves(size(path%laws))
 
@@ -96,10 +99,10 @@ contains
       end if
    end function moving_drives
 
-   !> Finds the number of the only drive that moves in an interval, if that drive is almost at rest at a time; otherwise
-   !> 0. Its rate is compared with its largest rate in a wider interval.
+   !> Finds the number of the only drive that moves in an interval, if this drive is almost at rest at a time: its rate
+   !> is small compared with its largest rate in a wider interval. Otherwise, on a leg, and if its rate has no bound: 0.
    pure integer function slow_drive(path, t1, t2, near, span) result(drive)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       real(wp), intent(in) :: t1, t2         !< times: the ends of the interval, in either order
       real(wp), intent(in) :: near           !< the time at which the drive may be almost at rest
       real(wp), intent(in) :: span(2)        !< times: the ends of the wider interval, increasing
@@ -116,13 +119,13 @@ contains
       if (abs(f(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) drive = 0
    end function slow_drive
 
-   !> Begins a leg. The leader starts at its value at a parameter of the path, with a constant rate. The other drives
-   !> keep their values there.
+   !> Begins a leg of a path. The leader starts from its value at a parameter of the path, with a constant rate. The
+   !> other drives keep their values at this parameter.
    subroutine lead(path, leader, parameter, rate, span)
-      type(drive_path_t), intent(inout) :: path
+      type(drive_path_t), intent(inout) :: path   !< the laws and, if the path is on one, the leg
       integer, intent(in) :: leader          !< number of the drive
-      real(wp), intent(in) :: parameter      !< of the path before, in the deck's unit of time
-      real(wp), intent(in) :: rate           !< of the leader, length or rad by the unit of time
+      real(wp), intent(in) :: parameter      !< of the path so far, in the deck's unit of time
+      real(wp), intent(in) :: rate           !< of the leader, length or rad per unit of time
       real(wp), intent(in) :: span(2)        !< times of the beginning and the end of the leg
       real(wp) :: leg(2, size(path%laws))
 
@@ -133,11 +136,12 @@ contains
       path%span = span
    end subroutine lead
 
-   !> Finds the first time at which a drive turns back, or comes to rest before it turns back; without one, `t`.
+   !> Finds the first time at which a drive turns back, or comes to rest before it turns back, by its law. If there is
+   !> no such time, the result is `t`. The time is found by steps and bisection.
    pure real(wp) function next_turn(path, i, from, t) result(turn)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       integer, intent(in) :: i               !< number of the drive
-      real(wp), intent(in) :: from, t        !< times between which it is sought: after `from`, up to `t`
+      real(wp), intent(in) :: from, t        !< times: the turn is sought after `from`, up to `t`
       real(wp) :: f(3), low, way
       integer :: k
 
@@ -159,12 +163,12 @@ contains
       end do
    end function next_turn
 
-   !> Finds the time at which some drive has gone a distance from its value at `last`; `t` if no drive does. Bounds of
-   !> the rate are too coarse to find it.
+   !> Finds the parameter of a path at which some drive has moved a distance from its value at `last`; `t` if no drive
+   !> moves so far. The parameter is found by bisection, because bounds of the rate are too wide for it.
    pure real(wp) function time_beside(path, last, t, distance) result(beside)
-      type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: last, t        !< parameters of the path between which it is sought
-      real(wp), intent(in) :: distance       !< in the solver's units
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
+      real(wp), intent(in) :: last, t        !< parameters of the path, unit of time: sought between them
+      real(wp), intent(in) :: distance       !< above 0, in the solver's units
       real(wp) :: high
       integer :: k
 
@@ -177,13 +181,13 @@ contains
       if (abs(t - high) <= 0.0_wp) beside = t
    end function time_beside
 
-   !> Finds the time at which the fastest drive has made a part of its way between two parameters, by its law. If the
-   !> drive is so slow there that its value does not give the time, or turns back on the way, at its dead point, it is
-   !> the time until which the drive slows down.
+   !> Finds the time at which the drive with the longest way between two parameters has covered a part of this way, by
+   !> its law. If the drive slows down near this time and then speeds up, its value does not give the time exactly: the
+   !> result is then the time at which it is slowest, or at which it turns back between the parameters.
    pure real(wp) function time_at_part(path, p1, p2, part) result(at)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path !< the laws and, if the path is on one, the leg
       real(wp), intent(in) :: p1, p2         !< parameters of the path, in the deck's unit of time
-      real(wp), intent(in) :: part           !< of the way, from 0 to 1
+      real(wp), intent(in) :: part           !< part of the way, from 0 to 1
       real(wp), dimension(size(path%laws)) :: start, way
       real(wp) :: span(2), low, high, first(3), last(3)
       integer :: i, k
@@ -207,9 +211,9 @@ contains
 
    contains
 
-      !> Finds the time at which the drive has made a part of its way.
+      !> Finds the time at which drive `i` has covered a part of its way, by bisection of its law over `span`.
       pure real(wp) function time_of(part) result(t)
-         real(wp), intent(in) :: part        !< of the way, from about 0 to 1
+         real(wp), intent(in) :: part        !< part of the way, from about 0 to 1
          real(wp) :: before
          integer :: k
 
@@ -220,7 +224,7 @@ contains
          end do
       end function time_of
 
-      !> Tells whether the speed of the drive falls at a time.
+      !> Tells whether the speed of drive `i` falls at a time, in the direction of the motion through `span`.
       pure logical function slows_down(t)
          real(wp), intent(in) :: t           !< time
          real(wp) :: f(3)

@@ -2,15 +2,15 @@
 !>
 !>    f(t) = value + rate t + acceleration t**2/2 + the sum of its terms
 !>
-!> A table is the natural cubic spline through its rows. The laws of rises are those of cams (Norton, Cam Design and
-!> Manufacturing Handbook, ch. 2 and 3). Where their acceleration jumps it is that from the right.
+!> A table is the natural cubic spline through its rows. The laws of rises are laws of cams (Norton, Cam Design and
+!> Manufacturing Handbook, ch. 2 and 3). At a jump of the acceleration the value after the jump counts.
 !>
 !> `bounds_of` encloses value, rate and acceleration over an interval of time. The bounds are true: they are widened
 !> by the rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise they are its
 !> extremes; for a sum they are the sums of these bounds, which may lie outside its extremes.
 !>
-!> `growing_sizes` tells how large the numbers are that are added up to the law: its value and its rates may be small
-!> differences of large ones, and are known by so many fewer digits.
+!> `growing_sizes` bounds the sizes of the numbers that a law adds up. Its value and its rates may be small differences
+!> of large numbers, and have then so many fewer known digits.
 !>
 !> The procedures of each kind of term stand together, kind by kind, below the laws.
 module drives
@@ -25,31 +25,34 @@ module drives
    public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of, largest_frequency
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
-   !> An interval for each derivative of a law.
+   !> An interval for each derivative of a law; the default has no value in it.
    type :: bounds_t
-      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. All -huge, huge: no
-      !> bounds; huge, -huge: no value.
+      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge and huge:
+      !> there are no bounds.
       real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
    end type bounds_t
 
-   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals and
-   !> quotients of TIME put it some roundings aside. Error estimates put both the instant and the duration off by 256
-   !> roundings times a normal deviate: apart by 362 times such a deviate, which is below 2048 but once in a hundred
-   !> million times. Instants of doubles are as far off in real128.
+   !> An instant that is before a joint by less than this part of the rise's times counts as at the joint: decimals and
+   !> quotients of TIME shift an instant by some roundings. Error estimates change both the instant and the duration by
+   !> 256 roundings times a normal deviate. Their difference changes by 362 times such a deviate, which exceeds 2048
+   !> once in a hundred million times. In real128 instants that are doubles have the roundings of doubles.
    real(wp), parameter :: joint_tolerance = 2048.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
-   !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
+   !> Bound of the rounding error of a law, relative to the sum of the absolute values of its terms: some ten
+   !> operations.
    real(wp), parameter :: law_rounding = 16.0_wp*epsilon(1.0_wp)
-   !> The largest derivatives 0 to 3 of a rise of the lift 1 and the duration 1, whatever its law.
+   !> Bounds of the derivatives 0 to 3 of a rise with the lift 1 and the duration 1: 2 pi of the cycloid is below 6.3,
+   !> and 60 is the third derivative of the 3-4-5 polynomial.
    real(wp), parameter :: rise_most(0:3) = [1.0_wp, 2.0_wp, 6.3_wp, 60.0_wp]
-   !> A drive may come to rest by so much before a joint or after, in parts of the joints' times.
+   !> A joint may be so far from the instant at which a drive stops or starts, as a part of the times: twice
+   !> `joint_tolerance`.
    real(wp), parameter :: rest_part = 4096.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
 
-   !> Gives value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and the deck's unit
-   !> of time.
+   !> Computes value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and the deck's
+   !> unit of time.
    pure function drive_motion(law, t) result(f)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
 
@@ -61,9 +64,9 @@ contains
       if (allocated(law%terms)) call add_terms(law%terms, t, f)
    end function drive_motion
 
-   !> Adds the values, rates and accelerations of terms at a time.
+   !> Adds the values, rates and accelerations of the terms of a law at a time to sums.
    pure subroutine add_terms(terms, t, motion)
-      type(term_t), intent(in) :: terms(:)
+      type(term_t), intent(in) :: terms(:)   !< (any number) of one law
       real(wp), intent(in) :: t              !< time
       real(wp), intent(inout) :: motion(3)   !< the sums, in the drive's unit (length or rad) and the unit of time
       integer :: i
@@ -85,12 +88,13 @@ contains
       end do
    end subroutine add_terms
 
-   !> Finds the bounds of a law between two times. A table continues beyond its ends with its last pieces. If a power
-   !> does not exist somewhere in the interval, there are no bounds.
+   !> Finds true bounds of value, rate and acceleration of a law between two times, in the drive's unit and the deck's
+   !> unit of time. A table continues beyond its ends with its last pieces. If a power does not exist somewhere in the
+   !> interval, there are no bounds: -huge and huge.
    pure function bounds_of(law, t1, t2, is_instant) result(b)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t1, t2         !< times in either order
-      logical, intent(in) :: is_instant      !< one instant and its roundings: jumps as in `drive_motion`
+      logical, intent(in) :: is_instant      !< the interval is one instant: an acceleration that jumps has one value
       type(bounds_t) :: b, of_term
       real(wp) :: from, to, times(3)
       integer :: i, k
@@ -133,28 +137,28 @@ contains
       end do
    end function bounds_of
 
-   !> Widens bounds by a value and its derivatives, with their rounding errors.
+   !> Widens bounds so that they enclose a value and its derivatives, with their rounding errors.
    pure subroutine widen(bounds, values, magnitudes)
-      type(bounds_t), intent(inout) :: bounds
+      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
       real(wp), intent(in) :: values(0:2)    !< value and derivatives, in the units of the bounds
-      real(wp), intent(in) :: magnitudes(0:2)   !< of each, the sum of the absolute values of its terms
+      real(wp), intent(in) :: magnitudes(0:2)   !< of each, the sum of the absolute values of its terms, in its unit
 
       bounds%low = min(bounds%low, values - law_rounding*magnitudes)
       bounds%high = max(bounds%high, values + law_rounding*magnitudes)
    end subroutine widen
 
-   !> Finds the nearest time of an interval.
+   !> Finds the time of an interval that is nearest to a given time.
    elemental real(wp) function within(t, from, to)
-      real(wp), intent(in) :: t              !< the time that the result is nearest to
+      real(wp), intent(in) :: t              !< the given time
       real(wp), intent(in) :: from, to       !< times: the ends of the interval, in their order
 
       within = min(max(t, from), to)
    end function within
 
-   !> Estimates the largest |rate| of a drive for |time| <= `t`, in the drive's unit (length or rad) and the deck's unit
-   !> of time; `bounds_of` has true bounds.
+   !> Estimates the largest |rate| of a drive for |time| <= `t`, in the drive's unit (length or rad) per unit of time.
+   !> An estimate takes less time than the true bounds of `bounds_of`.
    pure real(wp) function drive_rate(drive, t) result(rate)
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< with its law
       real(wp), intent(in) :: t              !< time, at least 0
       integer :: i
 
@@ -176,10 +180,10 @@ contains
       end do
    end function drive_rate
 
-   !> Finds the times (any number) at which some derivative of a law jumps: the knots of its tables, the joints of its
-   !> rises.
+   !> Finds the times (any number, in no order) at which some derivative of a law jumps: the knots of its tables and the
+   !> joints of its rises.
    pure function joints_of(drive) result(times)
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< with its law
       real(wp), allocatable :: times(:)
       integer :: i
 
@@ -194,18 +198,18 @@ contains
       end do
    end function joints_of
 
-   !> Finds the largest frequency of the harmonics of a drive, in rad over the unit of time; 0 without any.
+   !> Finds the largest frequency of the harmonics of a drive, in rad per unit of time; 0 if the drive has none.
    pure real(wp) function largest_frequency(drive) result(largest)
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< with its law
 
       largest = 0.0_wp
       if (.not. allocated(drive%terms)) return
       largest = maxval([largest, pack(abs(drive%terms%r(2)), drive%terms%kind == term_harmonic)])
    end function largest_frequency
 
-   !> Computes r1 sin(r2 t + r3) and its first two derivatives (3) at the time `t`.
+   !> Computes r1 sin(r2 t + r3) and its first two derivatives (3) at a time, in the unit of r1 and the unit of time.
    pure function harmonic_motion(numbers, t) result(f)
-      real(wp), intent(in) :: numbers(3)           !< amplitude, frequency (rad over the unit of time), phase (rad)
+      real(wp), intent(in) :: numbers(3)     !< amplitude (drive's unit), frequency (rad per unit of time), phase (rad)
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3), u
 
@@ -213,10 +217,11 @@ contains
       f = numbers(1)*[sin(u), numbers(2)*cos(u), -numbers(2)**2*sin(u)]
    end function harmonic_motion
 
-   !> Finds the bounds of r1 sin(r2 t + r3). Each derivative is again a sine, with its phase advanced by a quarter turn.
-   !> The extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
+   !> Finds true bounds of r1 sin(r2 t + r3) and its first two derivatives between two times. Each derivative is again a
+   !> sine, with its phase advanced by a quarter turn. Its extremes are at the ends of the interval and at whole numbers
+   !> of quarter turns; after four of these they repeat.
    pure function harmonic_bounds(numbers, from, to) result(b)
-      real(wp), intent(in) :: numbers(3)     !< amplitude, frequency (rad over the unit of time), phase (rad)
+      real(wp), intent(in) :: numbers(3)     !< amplitude (drive's unit), frequency (rad per unit of time), phase (rad)
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
@@ -243,21 +248,22 @@ contains
       b%high = min(b%high, (1.0_wp + law_rounding)*abs(amplitudes))
    end function harmonic_bounds
 
-   !> Finds the sizes (3) of a harmonic at the times -`t` and `t`, for `growing_sizes`.
+   !> Finds the sizes (3) of value, rate and acceleration of a harmonic at the times -t and t, for `growing_sizes`.
    pure function harmonic_sizes(numbers, t) result(sizes)
-      real(wp), intent(in) :: numbers(3)     !< amplitude, frequency and phase without their signs
+      real(wp), intent(in) :: numbers(3)     !< |amplitude|, |frequency| (rad per unit of time), |phase|
       real(wp), intent(in) :: t              !< time
       real(wp) :: sizes(3)
 
       sizes = (1.0_wp + numbers(2)*t + numbers(3))*numbers(1)*[1.0_wp, numbers(2), numbers(2)**2]
    end function harmonic_sizes
 
-   !> Computes factor t**exponent. A whole number becomes an integer exponent, so that t may be zero or negative.
+   !> Computes factor t**exponent. A whole exponent is taken as an integer, so that t may be zero or negative; for any
+   !> other exponent t must be above 0. With a factor of 0 the result is 0.
    pure real(wp) function monomial(factor, exponent, t)
-      real(wp), intent(in) :: factor         !< in the unit of the result, over the unit of time to the exponent
+      real(wp), intent(in) :: factor         !< in the unit of the result per unit of time to the exponent
       real(wp), intent(in) :: exponent       !< any number
       real(wp), intent(in) :: t              !< time
-      !> Exponents below this are whole numbers of the default kind.
+      !> Whole exponents up to this fit into integers of the default kind.
       real(wp), parameter :: largest_whole = 1.0e6_wp
 
       if (abs(factor) <= 0.0_wp) then
@@ -269,7 +275,8 @@ contains
       end if
    end function monomial
 
-   !> Computes r1 t**r2 and its first two derivatives (3) at a time.
+   !> Computes r1 t**r2 and its first two derivatives (3) at a time, in the drive's unit and the unit of time. They must
+   !> exist there: `exists`.
    pure function power_motion(numbers, t) result(f)
       real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: t              !< time
@@ -279,8 +286,8 @@ contains
          monomial(numbers(1)*numbers(2)*(numbers(2) - 1.0_wp), numbers(2) - 2.0_wp, t)]
    end function power_motion
 
-   !> Finds the bounds of r1 t**r2: on either side of t = 0 each derivative is monotonic. There are no bounds if it does
-   !> not exist somewhere in the interval.
+   !> Finds true bounds of r1 t**r2 and its first two derivatives between two times: on either side of t = 0 each is
+   !> monotonic. If the power or a derivative does not exist somewhere, there are no bounds: -huge and huge.
    pure function power_bounds(numbers, from, to) result(b)
       real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: from, to       !< times, in their order
@@ -299,8 +306,8 @@ contains
       end do
    end function power_bounds
 
-   !> Finds the sizes (3) of a power, for `growing_sizes`. A derivative that grows more slowly than the time has its
-   !> size at `last`.
+   !> Finds the sizes (3) of value, rate and acceleration of a power, for `growing_sizes`. A derivative that grows more
+   !> slowly than the time has its size at `last`, so that the chord is a bound.
    pure function power_sizes(numbers, t, last) result(sizes)
       real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: t              !< time, at least 0: sizes at -t and t
@@ -327,9 +334,9 @@ contains
       if (abs(t) <= 0.0_wp) exists = exponent >= 2.0_wp .or. abs(exponent*(exponent - 1.0_wp)) <= 0.0_wp
    end function exists
 
-   !> Finds the bounds of a table between two times: each piece there is a cubic.
+   !> Finds true bounds of a table and its first two derivatives between two times, piece by piece: each is a cubic.
    pure function table_bounds(spline, from, to) result(b)
-      type(spline_t), intent(in) :: spline
+      type(spline_t), intent(in) :: spline   !< the table
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       integer :: k, first, last
@@ -341,18 +348,19 @@ contains
       end do
    end function table_bounds
 
-   !> Finds the largest mean rate between two rows of a table.
+   !> Finds the largest |mean rate| between two successive rows of a table, in the unit of its values per unit of time.
    pure real(wp) function table_rate(spline) result(rate)
-      type(spline_t), intent(in) :: spline
+      type(spline_t), intent(in) :: spline   !< the table
 
       associate (n => size(spline%x))
          rate = maxval(abs((spline%y(2:) - spline%y(:n - 1))/(spline%x(2:) - spline%x(:n - 1))))
       end associate
    end function table_rate
 
-   !> Finds the sizes (3) of a table at the times -`t` and `t`, from the differences of its rows.
+   !> Finds the sizes (3) of value, rate and acceleration of a table at the times -t and t, for `growing_sizes`, from
+   !> the differences of its rows.
    pure function table_sizes(spline, t) result(sizes)
-      type(spline_t), intent(in) :: spline
+      type(spline_t), intent(in) :: spline   !< the table
       real(wp), intent(in) :: t              !< time
       real(wp) :: sizes(3), bend, slope, h(size(spline%x) - 1)
 
@@ -365,12 +373,12 @@ contains
       end associate
    end function table_sizes
 
-   !> Widens bounds by a piece of a spline between two times: by its values at both ends, and at the times at which its
-   !> second or first derivative is zero.
+   !> Widens bounds so that they enclose a piece of a spline between two times: its values at both ends, and at the
+   !> times at which its second or first derivative is zero.
    pure subroutine widen_by_piece(bounds, spline, i, t1, t2)
-      type(bounds_t), intent(inout) :: bounds
-      type(spline_t), intent(in) :: spline
-      integer, intent(in) :: i               !< number of the piece
+      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
+      type(spline_t), intent(in) :: spline   !< the table
+      integer, intent(in) :: i               !< number of the piece: between the knots i and i + 1
       real(wp), intent(in) :: t1, t2         !< times in their order
       real(wp) :: f(3), u(5), h, farthest, slope, q, root, magnitude, curve, away
       integer :: k
@@ -400,25 +408,24 @@ contains
       end do
    end subroutine widen_by_piece
 
-   !> Finds how far before a joint a rise already has the acceleration from the right, as a part of its duration; 0 if
-   !> its acceleration is continuous.
+   !> Finds how far before a joint a rise already has the acceleration after the joint, as a part of the duration; 0 if
+   !> the acceleration is continuous.
    pure real(wp) function joint_width(term) result(width)
-      type(term_t), intent(in) :: term
+      type(term_t), intent(in) :: term       !< a rise
 
       width = 0.0_wp
       if (term_kinds(term%kind)%jumps) width = joint_distance(term)
    end function joint_width
 
-   !> Finds how far from a joint of a rise an instant may be that is meant to be at it, as a part of the rise's
-   !> duration.
+   !> Finds how far from a joint of a rise an instant may be that counts as at the joint, as a part of the duration.
    pure real(wp) function joint_distance(term) result(distance)
-      type(term_t), intent(in) :: term
+      type(term_t), intent(in) :: term       !< a rise
 
       distance = joint_tolerance*(1.0_wp + abs(term%r(1))/term%r(2))
    end function joint_distance
 
-   !> Computes s(u) of a rise of the lift 1 and the duration 1, and its first two derivatives (3): 0 before u = 0, and 1
-   !> from u = 1 on (Norton, Cam Design and Manufacturing Handbook, ch. 2 and 3).
+   !> Computes s(u) of a rise with the lift 1 and the duration 1, and its first two derivatives by u (3). s is 0 before
+   !> u = 0, and 1 from u = 1 on (Norton, Cam Design and Manufacturing Handbook, ch. 2 and 3).
    pure function rise_shape(kind, part, at) result(s)
       integer, intent(in) :: kind            !< term_cycloid, ..., term_parabola
       real(wp), intent(in) :: part           !< u, a part of the duration
@@ -442,9 +449,10 @@ contains
       if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
    end function rise_shape
 
-   !> Computes value, rate and acceleration (3) of a rise at a time, in the drive's unit and the deck's unit of time.
+   !> Computes value, rate and acceleration (3) of a rise at a time, in the drive's unit and the deck's unit of time. At
+   !> a joint the acceleration is the one after the joint.
    pure function rise_motion(term, t) result(f)
-      type(term_t), intent(in) :: term
+      type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3), u
 
@@ -454,34 +462,36 @@ contains
       end associate
    end function rise_motion
 
-   !> Finds the largest rate of a rise, which it has in its middle.
+   !> Finds the largest |rate| of a rise, at its middle, in the drive's unit per unit of time.
    pure real(wp) function rise_rate(term) result(rate)
-      type(term_t), intent(in) :: term
+      type(term_t), intent(in) :: term       !< a rise
       real(wp) :: s(3)
 
       s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
       rate = abs(term%r(3)*s(2))/term%r(2)
    end function rise_rate
 
-   !> Finds the sizes (3) of a rise, for `growing_sizes`. Beyond its end the time changes nothing.
+   !> Finds the sizes (3) of value, rate and acceleration of a rise, for `growing_sizes`, at any time: after its end the
+   !> time changes nothing.
    pure function rise_sizes(numbers) result(sizes)
-      real(wp), intent(in) :: numbers(3)     !< start, duration and lift without their signs
+      real(wp), intent(in) :: numbers(3)     !< |start|, duration (time), |lift| (drive's unit)
       real(wp) :: sizes(3)
 
       sizes = numbers(3)*(rise_most(:2) + (2.0_wp*numbers(1)/numbers(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, numbers(2), &
          numbers(2)**2]
    end function rise_sizes
 
-   !> Finds the bounds of a rise: its values at both ends, and at the places in between at which any law has an extreme
-   !> of a derivative. At a joint an acceleration may have two values, but not at one instant.
+   !> Finds true bounds of a rise and its first two derivatives between two times: from its values at both ends, and at
+   !> all points in between at which any law has an extreme of a derivative. At a joint in the interval the acceleration
+   !> may have two values.
    pure function rise_bounds(term, from, to, is_instant) result(b)
-      type(term_t), intent(in) :: term
+      type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: from, to       !< times in their order
-      logical, intent(in) :: is_instant      !< the interval is one instant
+      logical, intent(in) :: is_instant      !< the interval is one instant: an acceleration has one value
       type(bounds_t) :: b
-      !> The extremes of the acceleration of the 3-4-5 polynomial are as far from the middle: at (3 -+ sqrt(3))/6.
+      !> Distance of the extremes of the acceleration of the 3-4-5 polynomial from its middle: at (3 -+ sqrt(3))/6.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
-      !> Parts of the duration: these extremes, those of the other laws, and all joints.
+      !> Parts of the duration: these extremes, the extremes of the other laws, and all joints.
       real(wp), parameter :: extreme_places(7) = [0.0_wp, 0.5_wp - aside, 0.25_wp, 0.5_wp, 0.75_wp, 0.5_wp + aside, &
          1.0_wp]
       real(wp) :: u1, u2, width
@@ -500,11 +510,11 @@ contains
       end do
    end function rise_bounds
 
-   !> Widens bounds by a rise at a part of its duration. Where a law is steepest, a rounding of `part` changes its
-   !> second derivative by 60 roundings; in a dwell zeros are exact.
+   !> Widens bounds so that they enclose a rise at a part of its duration. At its steepest, a rounding of `part` changes
+   !> the second derivative by 60 roundings; in a dwell zeros are exact.
    pure subroutine widen_by_rise(bounds, term, part, at)
-      type(bounds_t), intent(inout) :: bounds
-      type(term_t), intent(in) :: term
+      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
+      type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: part           !< the part of the duration
       real(wp), intent(in) :: at             !< a part of the duration in the piece whose acceleration is taken
       real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
@@ -517,12 +527,12 @@ contains
       call widen(bounds, factors*s, magnitudes)
    end subroutine widen_by_rise
 
-   !> Bounds how much value, rate and acceleration (3) of a law change with each of its numbers, or with the time. The
-   !> bounds are (:, 0) + |t| (:, 1) at each time t from -`last` to `last`: the changes divided by the relative change
-   !> of the number, in the drive's unit (length or rad) and the deck's unit of time. For a power with a negative
-   !> exponent they hold at the time `last` only: before, the law itself is as large.
+   !> Bounds how much value, rate and acceleration (3) of a law change with a relative change of each of its numbers, or
+   !> of the time: by the relative change times (:, 0) + |t| (:, 1) at each time t from -`last` to `last`, in the
+   !> drive's unit (length or rad) and the deck's unit of time. For a power with a negative exponent the bounds hold
+   !> only at `last`: before, the law itself is as large.
    pure function growing_sizes(law, last) result(sizes)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: last           !< largest |time|
       real(wp) :: sizes(3, 0:1)
 
@@ -530,10 +540,10 @@ contains
       sizes(:, 1) = (sizes_at(law, last, last) - sizes(:, 0))/merge(last, 1.0_wp, last > 0.0_wp)
    end function growing_sizes
 
-   !> Finds the sizes (3) of a law at the times -`t` and `t`, for `growing_sizes`. Between t = 0 and `last` no size is
-   !> above its chord.
+   !> Finds the sizes (3) of value, rate and acceleration of a law at the times -t and t, for `growing_sizes`: the sums
+   !> of the sizes of all terms. Between 0 and `last` no size is above the chord of its end values.
    pure function sizes_at(law, t, last) result(sizes)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t              !< time, from 0 to `last`
       real(wp), intent(in) :: last           !< largest |time|
       real(wp) :: sizes(3)
@@ -559,11 +569,11 @@ contains
       end do
    end function sizes_at
 
-   !> Tells whether a drive does not move between two times, by the bounds of its rate; if they are equal, whether it
-   !> does not move from that time on. A time near a joint counts as after the joint at the beginning of the interval,
+   !> Tells whether a drive does not move between two times, by the bounds of its rate. For two equal times: whether the
+   !> drive does not move just after. A time near a joint counts as after the joint at the beginning of the interval,
    !> and as before the joint at its end.
    elemental logical function is_at_rest(law, t1, t2)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t1, t2         !< times in either order
       type(bounds_t) :: b
       real(wp) :: width, from
@@ -576,9 +586,10 @@ contains
       is_at_rest = b%low(1) >= 0.0_wp .and. b%high(1) <= 0.0_wp
    end function is_at_rest
 
-   !> Halves an interval at one end of which a condition holds. After digits(1.0_wp) calls its ends are neighbours.
+   !> Halves an interval of time with a condition that holds at its lower end and not at its upper end. After
+   !> digits(1.0_wp) calls its ends are neighbours, but for an interval around 0.
    pure subroutine halve(holds, low, high)
-      logical, intent(in) :: holds           !< the condition holds at the middle
+      logical, intent(in) :: holds           !< the condition holds at the middle of the interval
       real(wp), intent(inout) :: low         !< time up to which the condition holds
       real(wp), intent(inout) :: high        !< time from which it does not hold
       real(wp) :: middle

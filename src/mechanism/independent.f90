@@ -1,6 +1,6 @@
-!> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
-!> on another: each is solved as a mechanism of its own, in its own numbers and its own lengths. The set keeps its
-!> settings and the places of its rows and drives, in the order of the cards.
+!> The independent mechanisms (parts) of a set: links that pairs or drives join, but not through the ground. No part
+!> acts on another: each is solved as a mechanism with numbering and characteristic lengths of its own. The set keeps
+!> its settings, and for each row and drive, in the order of the cards, its part and its number there.
 module independent
    use disjoint_sets, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
@@ -16,37 +16,40 @@ module independent
 
    !> A row or drive of a set: the number of its part, and its number there.
    type :: member_t
-      integer :: part = 1, number = 0
+      integer :: part = 1, number = 0        !< of the part in the set; of the row or drive in the part
    end type member_t
 
-   !> The numbers in the deck of all members of a kind that a part has, increasing: the place in the list is the number
-   !> in the part. Or, for each number in the deck, the number in the part.
+   !> A numbering of the members of one kind, in one of two directions:
+   !>
+   !> - `of` (members of the part) has their numbers in the set, increasing; the index is the number in the part;
+   !> - `of` (0:members of the set) has their numbers in the part; 0: not in the part.
    type :: numbering_t
       integer, allocatable :: of(:)
    end type numbering_t
+
    !> The kind of drives, after links, points, pairs and measures (request_link, ..., request_measure).
    integer, parameter :: of_drives = 5
-   !> The kinds of the subjects of numbers on cards.
+   !> The kinds of the subjects of numbers on cards, for each kind of number.
    integer, parameter :: of_numbers(parameter_link:parameter_knot) = &
       [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
-   !> A set, divided. A row of a ground point belongs to a part whose pairs use the point; other rows of the ground
-   !> alone belong to the first part.
+   !> A set, divided into parts. A row of a ground point belongs to a part whose pairs use the point; all other rows of
+   !> only the ground belong to the first part.
    type, extends(settings_t) :: set_t
-      integer :: count = 1                          !< of independent mechanisms
+      integer :: count = 1                          !< number of independent mechanisms
       type(mechanism_t), allocatable :: parts(:)    !< (count)
-      type(member_t), allocatable :: rows(:), drives(:)   !< in the order of the cards
-      type(numbering_t), allocatable :: cards(:)    !< (parts) of their links, for pictures
-      real(wp) :: largest_tolerance = 0.0_wp        !< as a part of the whole's sizes; 0: no number has a tolerance
+      type(member_t), allocatable :: rows(:), drives(:)   !< (rows, drives) in the order of the cards
+      type(numbering_t), allocatable :: cards(:)    !< (count) numbers of the links in the set, for pictures
+      real(wp) :: largest_tolerance = 0.0_wp        !< in characteristic lengths and rates, at most 1; 0: none
    end type set_t
 
 contains
 
    !> Divides a set into its parts. A part has the ground links, and their points, that its pairs, drives and rows use.
-   !> A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   !> A BRANCH card without a link belongs to every part. Time and memory grow in proportion to the deck.
    subroutine divide(m, set)
       type(mechanism_t), intent(in) :: m
-      type(set_t), intent(out) :: set
+      type(set_t), intent(out) :: set        !< the set, divided
       type(sorted_t) :: links, points, pairs, measures, drives, rows
       type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:), &
@@ -87,7 +90,7 @@ contains
       measures = sorted_numbers(pack(measured%number, measured%kind == request_measure), &
          pack(measuring, measured%kind == request_measure), set%count)
 
-      ! Each point, and each link, with the part that it belongs to or that uses it.
+      ! Each point, and each link, once for its own part and once for each use by a part.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
                                    kinds_of_rows(m%requests%kind)%subject == request_point), &
                  is_point => measured%kind == request_point)
@@ -134,7 +137,8 @@ contains
 
    contains
 
-      !> Lets every part use the ground points of lengths, if a length has a tolerance: these points move one another.
+      !> Adds the ground points of all lengths to every part, if a length has a tolerance: one length moves the points
+      !> of others.
       subroutine add_lengths()
          integer :: i, k
 
@@ -148,10 +152,10 @@ contains
       end subroutine add_lengths
    end subroutine divide
 
-   !> Makes a set of one part, which is the set itself.
+   !> Makes a divided set of one part: the whole mechanism, without its texts.
    subroutine take_whole(m, set)
       type(mechanism_t), intent(in) :: m
-      type(set_t), intent(inout) :: set      !< its settings are there
+      type(set_t), intent(inout) :: set      !< has its settings and its count, 1
       integer :: i
 
       set%rows = [(member_t(1, i), i=1, size(m%requests))]
@@ -159,16 +163,17 @@ contains
       allocate (set%parts(1), set%cards(1))
       set%cards(1)%of = [(i, i=1, size(m%links))]
       set%parts(1) = m
-      ! Parts are copied where numbers change: their texts would only take time.
+      ! A part is copied for each change of a number: its texts would only take time.
       if (allocated(m%echo)) deallocate (set%parts(1)%echo)
       if (allocated(m%remarks)) deallocate (set%parts(1)%remarks)
       if (allocated(m%branch_requests)) set%parts(1)%branch_requests%card = [(i, i=1, size(m%branch_requests))]
       call take_lengths(set%parts(1))
    end subroutine take_whole
 
-   !> Finds the sizes of a part that its rows ask for: its length for measures; length and rate for poles and curves.
+   !> Computes the characteristic sizes of a part that its rows need: the length for measures; length and rate for poles
+   !> and curves.
    subroutine take_lengths(own)
-      type(mechanism_t), intent(inout) :: own
+      type(mechanism_t), intent(inout) :: own   !< the part, with its requests and measures
 
       if (allocated(own%measures)) own%measures%length = characteristic_length(own)
       if (any(kinds_of_rows(own%requests%kind)%is_centre)) then
@@ -177,13 +182,13 @@ contains
       end if
    end subroutine take_lengths
 
-   !> Finds each measure, with the measures of which it is made, and all their subjects. They belong to the part of the
-   !> links of the measure; subjects of the ground belong to several parts.
+   !> Lists each measure, the measures of which it is made, and all their subjects, each with the part of the links of
+   !> the measure. Subjects on the ground are listed for several parts.
    subroutine find_measured(m, link_part, measured, measuring)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link_part(:)    !< (links) the part of each
-      type(subject_t), allocatable, intent(out) :: measured(:)   !< (any number) all measures and their subjects
-      integer, allocatable, intent(out) :: measuring(:)   !< (measured) the part of each
+      integer, intent(in) :: link_part(:)    !< (links) the part of each; 0: ground
+      type(subject_t), allocatable, intent(out) :: measured(:)   !< (entries) measures and subjects, some several times
+      integer, allocatable, intent(out) :: measuring(:)   !< (entries) the part of each
       integer, allocatable :: list(:)
       integer :: last, n, j, pass
 
@@ -204,15 +209,16 @@ contains
       end do
    end subroutine find_measured
 
-   !> Gives the part to which a pair, drive, row or measure with these links belongs.
+   !> Finds the part to which a pair, drive, row or measure belongs, from its links. Ground alone belongs to part 1.
    pure integer function part_of(link_part, links)
-      integer, intent(in) :: link_part(:) !< (all links) the part of each
+      integer, intent(in) :: link_part(:) !< (links of the set) the part of each; 0: ground
       integer, intent(in) :: links(:)     !< (any number) numbers of the links
 
       part_of = maxval([1, link_part(links)])
    end function part_of
 
-   !> Finds the number of the part of each link (links), in the order of the deck; 0 for a ground link.
+   !> Finds the part of each link (links): parts are numbered in the order of their first links in the deck. A ground
+   !> link has the part 0.
    pure function part_of_links(m) result(part)
       type(mechanism_t), intent(in) :: m
       integer :: part(size(m%links))
@@ -224,17 +230,17 @@ contains
       end associate
    end function part_of_links
 
-   !> Makes a part of a set a mechanism of its own.
+   !> Makes a mechanism of a part of a set, in the part's own numbers.
    subroutine separate_mechanism(m, part, rows, branches, place, own)
       type(mechanism_t), intent(in) :: m     !< the set
-      type(numbering_t), intent(in) :: part(:)   !< (kinds) numbers in the set of the members of the part
+      type(numbering_t), intent(in) :: part(:)   !< (of_drives) for each kind, members' numbers in the set
       integer, intent(in) :: rows(:)         !< (rows of the part) numbers of its requests in the set
       integer, intent(in) :: branches(:)     !< (BRANCH cards of the part) their numbers in the set
-      !> (kinds) For each member of the set, and number 0, zeros before and after. Reason: of many parts each takes only
-      !> the time of its own size.
+      !> (of_drives) for each kind, scratch (0:members of the set): zeros before and after. Reason: each of many parts
+      !> then takes only the time of its own size.
       type(numbering_t), intent(inout) :: place(:)
       type(mechanism_t), intent(out) :: own  !< the part
-      logical, allocatable :: kept(:)        ! (lengths) it belongs to the part
+      logical, allocatable :: kept(:)        ! (lengths) the length belongs to the part
       integer :: i, k, kind
 
       do kind = 1, size(part)
@@ -311,18 +317,18 @@ contains
       end do
    end subroutine separate_mechanism
 
-   !> Gives the request of a row of a set, in the numbers of its part.
+   !> Gives the request of a row of a divided set, in the numbers of the row's part.
    pure type(request_t) function request_of(set, i)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row among the rows of the set
 
       request_of = set%parts(set%rows(i)%part)%requests(set%rows(i)%number)
    end function request_of
 
-   !> Finds the first drive of the independent mechanism of a row: its number among all drives of the set; 0 if the
-   !> mechanism has no drive.
+   !> Finds the first drive of the independent mechanism of a row: the drive's number among all drives of the set; 0 if
+   !> the mechanism has no drive.
    pure integer function first_drive(set, i)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row among the rows of the set
 
       first_drive = findloc(set%drives%part, set%rows(i)%part, dim=1)

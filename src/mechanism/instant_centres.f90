@@ -1,5 +1,6 @@
 !> The instant centre of the motion of two links, and the centre of curvature of a point's path, from positions,
-!> velocities and accelerations. Either may be at infinity, or nothing may move. This distinction depends on no unit.
+!> velocities and accelerations. A centre may be at infinity, or nothing may move: which of these holds depends on no
+!> unit.
 module instant_centres
    use kinds, only: wp
    use plane_vectors, only: pi, rotated, quarter_turn, cross
@@ -10,33 +11,35 @@ module instant_centres
 
    !> The states of a centre.
    enum, bind(c)
-      enumerator :: centre_finite = 0
+      enumerator :: centre_finite = 0 !< all numbers of the centre exist
       enumerator :: centre_infinite   !< farther than any length of the mechanism: only its direction exists
       enumerator :: centre_starting   !< of a curve: the point stands still, and its acceleration has a direction
       enumerator :: centre_resting    !< nothing moves
       enumerator :: points_coincide   !< of a measure: two points are at one place
    end enum
 
-   !> Half of the digits. A motion that is smaller by this part than the characteristic one is rest. A centre that is
-   !> farther than 1/negligible_motion (6.7E7 in real64) characteristic lengths is at infinity. Reason: angular
-   !> velocities are known to a rounding or, if the mechanism is ill-conditioned, to many. Parallel cranks then differ
-   !> from nearly parallel ones as long as half of the digits are left. A finite centre has the other half.
+   !> A motion below this part of the characteristic motion is rest. A centre that is farther than 1/negligible_motion
+   !> (6.7E7 in real64) characteristic lengths is at infinity. Reason: angular velocities have an error of one rounding
+   !> or, if the mechanism is ill-conditioned, of many. With half of the digits, parallel cranks differ from nearly
+   !> parallel cranks as long as half of the digits are right, and a finite centre has the other half.
    real(wp), parameter :: negligible_motion = sqrt(epsilon(1.0_wp))
-   !> A weight is at least this part of the velocity with which it is compared, so that places exist in any case.
+   !> A weight is at least this part of the velocity with which it is compared, so that the division by it is finite.
    real(wp), parameter :: least_weight = epsilon(1.0_wp)**2
-   !> Two angles of one direction that differ by rounding only are within this distance (rad) of the ends of the range.
-   !> The larger one of the two is printed: rounding must not choose.
+   !> A direction within this distance (rad) of the lower end of the range of angles becomes the upper end: rounding
+   !> must not choose between both. Half of the digits are more than any rounding.
    real(wp), parameter :: end_of_range = sqrt(epsilon(1.0_wp))
 
-   !> A centre. Its place times its `weight` is finite even at infinity. Of a pole, `value` has x, y and direction in
-   !> the fixed plane (:, 0), in the axes of link I (:, 1) and of link J (:, 2). Of a curve: the point and the tangent
-   !> (:, 0), the centre of curvature (:2, 1), the radius (1, 2); speed and acceleration in characteristic ones (3, 1:).
+   !> A centre. Its coordinates times its `weight` are finite even at infinity. `value` has:
+   !>
+   !> - of a pole, x, y and direction in the fixed plane (:, 0), in the axes of link I (:, 1) and of link J (:, 2);
+   !> - of a curve, the point and the tangent (:, 0), the centre of curvature (:2, 1), the radius (1, 2), speed and
+   !>   acceleration in units of the characteristic length and rate (3, 1:).
    type :: centre_t
       integer :: state = centre_finite       !< centre_finite, ...
-      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones; of a measure the least
-      !> distance of two points between which it measures, in characteristic lengths.
+      !> Of a pole the relative angular velocity (rad per unit of time); of a curve v x a in units of the characteristic
+      !> length and rate; of a measure the least distance of two of its points, in characteristic lengths.
       real(wp) :: weight = 1.0_wp
-      real(wp) :: value(3, 0:2) = 0.0_wp     !< lengths in the deck's unit, angles in radians
+      real(wp) :: value(3, 0:2) = 0.0_wp     !< lengths in the deck's unit, angles in rad
    end type centre_t
 
 contains
@@ -45,7 +48,7 @@ contains
    !> relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and Roth,
    !> Theoretical Kinematics, 1979, ch. VIII). At infinity the centre is in the direction of R u.
    pure function pole_of(link_i, link_j, length, rate) result(c)
-      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2)   !< x, y (length), phi (rad); derivatives
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2)   !< x, y (length), phi (rad); derivatives by time
       real(wp), intent(in) :: length         !< characteristic length, above 0
       real(wp), intent(in) :: rate           !< characteristic rate, above 0, 1 over the unit of time
       type(centre_t) :: c
@@ -70,10 +73,11 @@ contains
          line_angle(rotated(quarter_turn(u), to_j))]
    end function pole_of
 
-   !> Finds the place, velocity and acceleration (2, 0:2) of a point in the axes of a moving link.
+   !> Finds the position, velocity and acceleration x, y (2, 0:2) of a point relative to a moving link, in the axes of
+   !> the link and the deck's units.
    pure function seen_from(frame, motion) result(r)
-      real(wp), intent(in) :: frame(3, 0:2)  !< of the link: x, y (length), phi (rad); derivatives
-      real(wp), intent(in) :: motion(2, 0:2) !< of the point: x, y (length) from the origin of the frame; derivatives
+      real(wp), intent(in) :: frame(3, 0:2)  !< of the link: x, y (length), phi (rad); derivatives by time
+      real(wp), intent(in) :: motion(2, 0:2) !< of the point in the fixed plane: x, y (length); derivatives by time
       real(wp) :: r(2, 0:2), back(2)
 
       r = motion - frame(:2, :)
@@ -87,16 +91,17 @@ contains
    end function seen_from
 
    !> Finds the tangent, radius and centre of curvature of the path of a point P with the velocity v and the
-   !> acceleration a:  radius |v|**3/|v x a|,  centre P + R v |v|**2/(v x a),  R a quarter turn. If the point stands
-   !> still its path has the direction of a, and its curvature does not follow from v and a.
+   !> acceleration a:  radius |v|**3/|v x a|,  centre P + R v |v|**2/(v x a),  R a quarter turn. If the point is at
+   !> rest, its path begins in the direction of a, and its curvature does not follow from v and a: only the tangent is
+   !> found.
    pure function curve_of(motion, length, rate) result(c)
-      real(wp), intent(in) :: motion(2, 0:2) !< of the point: x, y (length); derivatives
+      real(wp), intent(in) :: motion(2, 0:2) !< of the point: x, y (length); derivatives by time
       real(wp), intent(in) :: length         !< characteristic length, above 0
       real(wp), intent(in) :: rate           !< characteristic rate, above 0, 1 over the unit of time
       type(centre_t) :: c
       real(wp) :: v(2), a(2), speed
 
-      ! In units of the mechanism, cubes do not overflow.
+      ! In units of the characteristic length and rate, cubes do not overflow.
       v = motion(:, 1)/(length*rate)
       a = motion(:, 2)/(length*rate**2)
       speed = norm2(v)
@@ -109,14 +114,16 @@ contains
          return
       end if
       c%weight = cross(v, a)
-      ! Not in parts of |v| |a|: near its end of a stroke a point is slow, and its acceleration nearly all tangential.
+      ! Rejected: parts of |v| |a|. Near an end of its stroke a point is slow, and its acceleration nearly all
+      ! tangential.
       if (abs(c%weight) <= negligible_motion*speed**3) c%state = centre_infinite
       c%weight = sign(max(abs(c%weight), least_weight*speed**3), c%weight)
       c%value(:2, 1) = motion(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
       c%value(1, 2) = length*speed**3/abs(c%weight)
    end function curve_of
 
-   !> Gives the direction of a vector, from -pi (excluded) to pi (rad); 0 for a vector of length 0.
+   !> Gives the direction of a vector (rad), from -pi (excluded) to pi, but for `end_of_range`; 0 for a vector of length
+   !> 0.
    pure real(wp) function arrow_angle(vector)
       real(wp), intent(in) :: vector(2)      !< in any unit
 
@@ -125,7 +132,8 @@ contains
       if (arrow_angle <= end_of_range - pi) arrow_angle = arrow_angle + 2.0_wp*pi
    end function arrow_angle
 
-   !> Gives the direction of the line along a vector, from -pi/2 (excluded) to pi/2 (rad).
+   !> Gives the direction of the line along a vector (rad), from -pi/2 (excluded) to pi/2, but for `end_of_range`; 0 for
+   !> a vector of length 0.
    pure real(wp) function line_angle(vector)
       real(wp), intent(in) :: vector(2)      !< in any unit
 

@@ -8,20 +8,20 @@ module names
    private
    public :: drive_name, drive_length, subject_name, listed, more
 
-   !> The largest number of names in a list; the rest is only counted.
+   !> The largest number of names in a list: nobody reads more. All others are only counted.
    integer, parameter :: max_listed_names = 8
-   !> The largest number of characters of these names: drives have long names.
+   !> The largest number of characters of a list, since drives have long names.
    integer, parameter :: max_list_length = 84
 
-   !> Characters of the name of a drive.
+   !> Characters of the name of a drive: three words and two blanks.
    integer, parameter :: drive_length = 3*label_length + 2
 
 contains
 
-   !> Names a drive as on its card: its kind and the names of its links, point or pair.
+   !> Names a drive as on its card: kind, and names of its links, point or pair.
    pure function drive_name(m, drive) result(name)
       type(mechanism_t), intent(in) :: m
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< of `m`
       character(drive_length) :: name
 
       name = trim(drive_words(drive%kind))//' '//subject_name(m, driven_kinds(drive%kind), drive%subject)
@@ -47,7 +47,7 @@ contains
       end select
    end function subject_name
 
-   !> Lists names with commas between them; of many, the first ones and the number of the rest.
+   !> Lists names with commas between them. Of many names the text has the first ones and the number of the others.
    pure function listed(words, polish) result(text)
       character(*), intent(in) :: words(:)   !< (1 or more) the names
       logical, intent(in) :: polish          !< in Polish; otherwise in English
@@ -62,9 +62,9 @@ contains
       text = text//more(size(words) - i + 1, polish)
    end function listed
 
-   !> Gives the end of a list that is not complete: ' AND 3 MORE'; '' for a complete list.
+   !> Gives the text that ends an incomplete list of names: ' AND 3 MORE'; '' for a complete list.
    pure function more(n, polish) result(text)
-      integer, intent(in) :: n               !< number of names that are left out
+      integer, intent(in) :: n               !< number of names that the list leaves out, 0 or more
       logical, intent(in) :: polish          !< in Polish; otherwise in English
       character(:), allocatable :: text
 

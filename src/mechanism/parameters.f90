@@ -1,7 +1,8 @@
-!> The numbers on the cards of a mechanism: where each is in `mechanism_t`, its name, its unit, and its value. TOLER and
-!> VARY cards give other values to these numbers, and so do estimates of errors.
+!> The numbers on the cards of a mechanism: the position of each in `mechanism_t`, its name, its unit, and its value.
+!> TOLER and VARY cards and estimates of errors give other values to these numbers.
 !>
-!> An address (`parameter_t`) is four integers: it stays as it is if the number or the deck's units change.
+!> An address (`parameter_t`) is four integers: a change of the number or of the deck's units does not change the
+!> address.
 module parameters
    use kinds, only: wp, label_length
    use plane_vectors, only: pi, degree, direction, rotated, point_of
@@ -21,16 +22,16 @@ module parameters
 
    !> The unit of a number on a card.
    type :: unit_t
-      real(wp) :: factor = 1.0_wp                !< it in the units of `mechanism_t`
-      real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< of length and of time in it
-      character(2*label_length + 5) :: name = '' !< '' of a number without a unit
+      real(wp) :: factor = 1.0_wp                !< the unit in the units of `mechanism_t`
+      real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< exponents of length and of time in the unit
+      character(2*label_length + 5) :: name = '' !< as text, in tables; '': without a unit
    end type unit_t
 
-   !> The word for turns a minute on a DRIVE card.
+   !> The word for revolutions per minute on a DRIVE card.
    character(label_length), parameter :: turns_a_minute = 'RPM'
-   !> The units of time that are known.
+   !> The units of time with a known length: seconds, milliseconds, minutes, hours.
    character(3), parameter :: time_words(4) = ['S  ', 'MS ', 'MIN', 'H  ']
-   !> A minute in each of these units.
+   !> A minute in each of these units of time.
    real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
 
    !> The words of the cards for their numbers R1 to R3, by the kind of the number.
@@ -39,11 +40,12 @@ module parameters
 
 contains
 
-   !> Tells whether a number can have a tolerance. These numbers have none: the estimates of moving links; the axes of a
-   !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
+   !> Tells whether a number can have a tolerance. These numbers cannot: the estimates of moving links; the axes of a
+   !> ground link on which JOINT cards place points; strokes of cylinders; the times of TIME and of a table; the
+   !> exponent of a power.
    pure logical function takes_tolerance(m, number)
       type(mechanism_t), intent(in) :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
 
       takes_tolerance = .false.
       select case (number%kind)
@@ -61,11 +63,11 @@ contains
       end select
    end function takes_tolerance
 
-   !> Names a number in tables and messages: its card, the name that the card defines, and the word of the card for the
+   !> Names a number for tables and messages: its card, the name that the card defines, and the card's word for the
    !> number.
    pure function parameter_name(m, number) result(name)
       type(mechanism_t), intent(in) :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
       character(:), allocatable :: name
 
       associate (k => number%subject)
@@ -107,7 +109,7 @@ contains
          end if
       end associate
 
-      ! The word and the number of the term, and the word of its card for the number.
+      ! The word and the number of the term, and the card's word for the number.
       associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
          name = name//' '//trim(kind%word)//' '//whole(number%term)//' '
          if (kind%has_rows) then
@@ -118,10 +120,10 @@ contains
       end associate
    end function parameter_name
 
-   !> Finds the unit of a number on a card.
+   !> Finds the unit of a number on its card.
    function parameter_unit(m, number) result(unit)
       type(mechanism_t), intent(in) :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
       type(unit_t) :: unit
 
       select case (number%kind)
@@ -161,7 +163,7 @@ contains
 
    contains
 
-      !> Gives the unit of angles, or of lengths.
+      !> Gives the deck's unit of angles or of lengths.
       pure type(unit_t) function unit_of(is_angle) result(one)
          logical, intent(in) :: is_angle     !< of angles; otherwise of lengths
 
@@ -169,7 +171,7 @@ contains
          if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
       end function unit_of
 
-      !> Divides `unit` by a power of the unit of time.
+      !> Divides `unit` by a power of the deck's unit of time.
       subroutine divide(power, end_of_name)
          real(wp), intent(in) :: power       !< the exponent
          character(*), intent(in) :: end_of_name   !< the exponent as text: '**2'; '' for 1
@@ -179,11 +181,11 @@ contains
       end subroutine divide
    end function parameter_unit
 
-   !> Gives the value of a number, in the units of `mechanism_t`. The value of a number of a JOINT card, or of a hole,
-   !> is a coordinate in the drawing.
+   !> Gives the value of a number, in the units of `mechanism_t`. For a JOINT card or a hole the value is a coordinate
+   !> in the drawing.
    real(wp) function parameter_value(m, number) result(value)
       type(mechanism_t), intent(in), target :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
       real(wp), pointer :: x
       real(wp) :: place(2)
 
@@ -194,10 +196,10 @@ contains
       value = place(number%place)
    end function parameter_value
 
-   !> Points to the component of a mechanism that has a number; of a JOINT card, to the offset of its first point.
+   !> Points to the component of a mechanism that holds a number; for a JOINT card, to xi or eta of its first point.
    function number_in(m, number) result(x)
       type(mechanism_t), intent(in), target :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
       real(wp), pointer :: x
 
       associate (k => number%subject, i => number%place)
@@ -215,6 +217,7 @@ contains
             x => m%lengths(k)%length
          case (parameter_stroke)
             x => m%pairs(k)%stroke(i)
+
          case (parameter_knot)
             x => m%drives(k)%terms(number%term)%table%x(i)
          case (parameter_time)
@@ -233,32 +236,32 @@ contains
       end associate
    end function number_in
 
-   !> Gives a number a value. All other numbers that are as drawn follow. Points follow a length; numbers as drawn
-   !> follow neither a length nor the hole of one link.
+   !> Changes a number to a value, and all numbers that depend on it. Other numbers as drawn follow the drawing. Points
+   !> follow a length; numbers as drawn follow neither a length nor the hole of one link.
    subroutine change_parameter(m, number, value)
-      type(mechanism_t), intent(inout) :: m  !< its links are where the cards put them
-      type(parameter_t), intent(in) :: number
+      type(mechanism_t), intent(inout) :: m  !< with its links at the positions of the cards
+      type(parameter_t), intent(in) :: number   !< its address
       real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       type(mechanism_t), allocatable :: before
 
       if (allocated(m%lengths)) before = m
       call set_parameter(m, number, value)
-      ! As if the drawing had other coordinates: lengths and axes along bars are put again.
+      ! As in a drawing with other coordinates, lengths and axes along bars are applied again.
       if (number%kind == parameter_length .or. number%kind == parameter_joint .and. &
          (allocated(m%lengths) .or. any(m%links%from > 0))) call apply_lengths(m)
       if (any(number%kind == [parameter_drive, parameter_knot])) call set_table(m%drives(number%subject), number%term)
       if (number%kind > parameter_pair) return
       call follow_drawing(m, before)
-      ! It may have been as drawn itself.
+      ! The number itself may have been as drawn.
       if (number%kind == parameter_pair) call set_parameter(m, number, value)
    end subroutine change_parameter
 
-   !> Gives a number a value, and leaves all other numbers as they are. A coordinate of a JOINT card moves both of its
-   !> points, the coordinate of a hole one of them; all points of their holes move with them. After all numbers of a
-   !> table are put, `set_table` must follow.
+   !> Changes a number to a value, and no other number. A coordinate of a JOINT card moves both points of the joint, the
+   !> coordinate of a hole one of them; all points of their holes move as well. After all changes of the numbers of a
+   !> table, `set_table` must be called.
    subroutine set_parameter(m, number, value)
       type(mechanism_t), intent(inout), target :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
       real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       real(wp), pointer :: x
       real(wp) :: way(2)
@@ -280,10 +283,10 @@ contains
       end do
    end subroutine set_parameter
 
-   !> Solves the spline of a term for its rows, if the term is a table.
+   !> Computes the spline of a term from its rows, if the term is a table.
    subroutine set_table(drive, term)
-      type(drive_t), intent(inout) :: drive
-      integer, intent(in) :: term            !< number of the term; 0: none
+      type(drive_t), intent(inout) :: drive  !< the drive that has the term
+      integer, intent(in) :: term            !< number of the term; 0: none, nothing is done
 
       if (term == 0) return
       associate (one => drive%terms(term))
@@ -291,14 +294,14 @@ contains
       end associate
    end subroutine set_table
 
-   !> Gives the unit of angles on the cards, in radians.
+   !> Gives the unit of angles on the cards, in rad: 1 or a degree.
    pure real(wp) function angle_in_radians(m)
       type(mechanism_t), intent(in) :: m
 
       angle_in_radians = merge(degree, 1.0_wp, m%degrees)
    end function angle_in_radians
 
-   !> Gives a minute in a unit of time; 0 if the unit is not known.
+   !> Gives the length of a minute in a unit of time; 0 if the unit is not known.
    pure real(wp) function minute_in(time_unit)
       character(label_length), intent(in) :: time_unit   !< of the deck; S, MS, MIN and H are known
       integer :: i
@@ -308,11 +311,12 @@ contains
       if (i > 0) minute_in = minutes(i)
    end function minute_in
 
-   !> Gives all numbers that are as drawn the values of the drawing. If the mechanism has lengths, these have moved
-   !> points since the numbers were taken: then the numbers change as much as the drawing has changed since `before`.
+   !> Changes all numbers that are as drawn to the values of the drawing. If the mechanism has lengths, these have moved
+   !> points after the numbers were read from the drawing. Then the numbers change by as much as the drawing has changed
+   !> since `before`.
    pure recursive subroutine follow_drawing(m, before)
       type(mechanism_t), intent(inout) :: m
-      type(mechanism_t), allocatable, intent(in) :: before   !< the mechanism earlier; without lengths not allocated
+      type(mechanism_t), allocatable, intent(in) :: before   !< the earlier mechanism; without lengths not allocated
       type(mechanism_t), allocatable :: taken, none
       integer :: i
 
@@ -332,10 +336,11 @@ contains
          + (m%drives%polynomial(1) - taken%drives%polynomial(1))
    end subroutine follow_drawing
 
-   !> Tells whether a number is blank on its card: the drawing gives its value.
+   !> Tells whether the drawing gives the value of a number: the number is blank on its card, in a deck with JOINT
+   !> cards.
    pure logical function is_as_drawn(m, number)
       type(mechanism_t), intent(in) :: m
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< its address
 
       is_as_drawn = .false.
       if (number%kind == parameter_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)

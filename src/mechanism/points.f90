@@ -1,5 +1,5 @@
-!> The rows of the tables: the motion of links, of any point of any link, and of pairs; measures; instant centres, and
-!> centres of curvature.
+!> The rows of the tables: the motion of links, points and pairs; measures; instant centres and centres of curvature;
+!> ratios.
 module points
    use assertions, only: asserts, assert
    use kinds, only: wp, label_length
@@ -19,58 +19,63 @@ module points
    public :: row_t, column_of_ratio, find_row, known_at, amplification_in_rows, difference, is_due, is_printed, &
       keep_turns
 
-   !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
-   !> its value first) and their derivatives; of a pole or curve the numbers of `centre_t`.
+   !> One row of a table, in the deck's units of length and time and in rad. Its `value` has x, y, phi of a link, x, y
+   !> of a point, or the coordinate of a pair or measure, with derivatives by time; of a pole or curve the numbers of
+   !> `centre_t`.
    type, extends(centre_t) :: row_t
-      integer :: kind = request_link        !< request_link, ..., request_curve
+      integer :: kind = request_link        !< request_link, ..., request_ratio
       !> Of the link, point, pair or measure; of both links, or point and link; of a ratio the quantity BY the drive.
       character(4*label_length + 6) :: name = ''
-      integer :: form = 0                   !< which columns it has
+      integer :: form = 0                   !< its columns: row_link, ...
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
-      integer :: flag = flag_none           !< why the rest does not
+      integer :: flag = flag_none           !< why the rest does not exist: flag_none, ...
    end type row_t
 
-   !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
-   !> between them.
+   !> Two points that are closer, in characteristic lengths, coincide: their distance may be only rounding of their
+   !> positions.
    real(wp), parameter :: coincidence_limit = 4.0_wp*epsilon(1.0_wp)
-   !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
+   !> If two directions of a line differ by half a turn within this angle (rad), they do not show which way the line has
+   !> turned: rounding must not decide.
    real(wp), parameter :: half_turn_margin = 1.0e-9_wp
 
-   !> The coordinate of the row of a ratio that searches along the time take.
+   !> The coordinate in the row of a ratio that has the ratio and its rate by time, for searches along the time.
    integer, parameter :: column_of_ratio = 2
 
-   !> A row without numbers. It is a variable: a constant, or intent(out), the compiler makes number by number, and
-   !> waits for each as it copies them.
+   !> A row without numbers, never changed. Reason for a variable: gfortran builds a constant, or intent(out), number by
+   !> number, and a copy waits for each.
    type(row_t), protected :: new_row = row_t()
 
 contains
 
-   !> Tells whether a request has a row in the CSV at an instant: it is printed, or a COLUMN card names it.
+   !> Tells whether a request has a row in the CSV at an instant: the request is printed then, or a COLUMN card names
+   !> it.
    pure logical function is_due(settings, request, k)
-      class(settings_t), intent(in) :: settings
-      type(request_t), intent(in) :: request
+      class(settings_t), intent(in) :: settings   !< of the set
+      type(request_t), intent(in) :: request !< of the set
       integer, intent(in) :: k               !< number of the instant, from 0
 
       is_due = request%in_columns .or. is_printed(settings, request, k)
    end function is_due
 
-   !> Tells whether a request is printed at an instant: at every `every`-th, at the first and at the last, if any.
+   !> Tells whether a request is printed at an instant: at every `every`-th instant, at the first and at the last. A
+   !> request with `every` = 0 is never printed.
    pure logical function is_printed(settings, request, k)
-      class(settings_t), intent(in) :: settings
-      type(request_t), intent(in) :: request
+      class(settings_t), intent(in) :: settings   !< of the set
+      type(request_t), intent(in) :: request !< of the set
       integer, intent(in) :: k               !< number of the instant, from 0
 
       is_printed = request%every > 0
       if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(settings) - 1
    end function is_printed
 
-   !> Finds the row of a request, as far as the motion is known. Links and points of the ground are known at every
-   !> instant. It is a subroutine: of the many rows of a table none is copied.
+   !> Finds the row of a request, as far as the motion is known. Numbers that are not known, or do not exist, are of no
+   !> use: `known` and `state` of the row tell. Links and points of the ground are known at every instant. Reason for a
+   !> subroutine: none of the many rows of a table is copied.
    pure subroutine find_row(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t), intent(inout) :: row
+      type(request_t), intent(in) :: request !< of `m`
+      type(row_t), intent(inout) :: row      !< becomes the row of the request
       real(wp) :: p(2, 0:2)
 
       if (asserts) call assert(size(q%position, 2) == size(m%links), 'find_row: a motion of all links')
@@ -81,7 +86,7 @@ contains
       row = new_row
       row%kind = request%kind
       row%form = form_of(m, request)
-      ! Mostly all is known of all links. Without an allocation, but for measures.
+      ! Mostly all is known of all links. Only measures need an allocated list of links.
       if (q%known < 2 .or. q%flag == flag_stroke .or. allocated(q%link_known)) then
          if (request%kind == request_measure) then
             call find_known(m, q, request_links(m, request), row%known, row%flag)
@@ -131,18 +136,18 @@ contains
       end associate
    end subroutine find_row
 
-   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure in the motion in which only the
-   !> drive moves, with the rate 1, in the deck's units.
+   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure, in the deck's units, in the
+   !> motion in which only the drive moves, with the rate 1.
    !>
-   !> - value(1, 0) is the ratio, value(1, 1) its derivative by the drive;
-   !> - value(column_of_ratio, 1:) is the ratio and its rate, for searches along the time.
+   !> - value(1, 0) is the ratio, value(1, 1) its derivative by the value of the drive;
+   !> - value(column_of_ratio, 1:) is the ratio and its rate by time, for searches along the time.
    !>
-   !> If the motion by the drive is not known, nothing of the row is.
+   !> If the motion by the drive is not known, nothing of the row exists: `known` is -1.
    pure subroutine find_ratio(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t), intent(inout) :: row
+      type(request_t), intent(in) :: request !< of `m`
+      type(row_t), intent(inout) :: row      !< becomes the row of the request
       type(motion_t) :: unit
       integer, allocatable :: links(:)
       real(wp) :: s(0:2), f(3), in_angles, in_drive
@@ -166,6 +171,7 @@ contains
          unit%velocity(:, links) = by%velocity(:, links)
          unit%acceleration(:, links) = by%acceleration(:, links)
       end associate
+
       row%known = 2
       row%flag = flag_none
       if (request%kind == request_pair) then
@@ -184,13 +190,13 @@ contains
       row%value(column_of_ratio, 1:) = [row%value(1, 0), row%value(1, 1)*(f(2)/in_drive)]
    end subroutine find_ratio
 
-   !> Finds how much is known of a row: as much as of the link of which least is known.
+   !> Finds how much of a row is known: as much as is known of that one of its links of which least is known.
    pure subroutine find_known(m, q, links, known, flag)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: links(:)        !< their numbers
-      integer, intent(inout) :: known        !< as in `motion_t`: what is known without them
-      integer, intent(inout) :: flag         !< why the rest is not
+      integer, intent(in) :: links(:)        !< (any number) their numbers
+      integer, intent(inout) :: known        !< as in `motion_t`; at first, as if no link lacked anything
+      integer, intent(inout) :: flag         !< why the rest is not known: flag_none, ...
       integer :: k
 
       if (q%flag == flag_stroke) flag = q%flag
@@ -202,9 +208,10 @@ contains
       end do
    end subroutine find_known
 
-   !> Finds how much of a row exists, as in `motion_t`. If points coincide, only the value of a length exists.
+   !> Finds how much of a row exists: -1 nothing, 0 its value, 1 its rate too, 2 its acceleration too. If points
+   !> coincide, only the value of a length exists.
    pure integer function known_at(row)
-      type(row_t), intent(in) :: row
+      type(row_t), intent(in) :: row         !< as `find_row` leaves it
 
       known_at = row%known
       if (row%state /= points_coincide) return
@@ -212,7 +219,7 @@ contains
    end function known_at
 
    !> Gives the position, velocity and acceleration (3, 0:2) of a link: x, y from the motion's origin (length), phi
-   !> (rad).
+   !> (rad), and their derivatives by time.
    pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i               !< number of the link
@@ -223,9 +230,9 @@ contains
       x(:, 2) = q%acceleration(:, i)
    end function link_motion
 
-   !> Finds by how much the numbers of a changed row differ from the numbers of a row, to first order (3, 0:2). A place
-   !> p = n/w with the weight w changes by (n' - p w')/w when n and w become n' and w'. Directions of lines differ
-   !> without half turns.
+   !> Finds by how much (3, 0:2) the numbers of a changed row differ from the numbers of a row, to first order, in the
+   !> units of the row. A coordinate p = n/w of a centre, with its weight w, changes by (n' - p w')/w if n and w become
+   !> n' and w'. Directions of lines are compared without half turns.
    pure function difference(one, row) result(d)
       type(row_t), intent(in) :: one         !< the changed row
       type(row_t), intent(in) :: row         !< the row itself
@@ -241,8 +248,8 @@ contains
       end if
    end function difference
 
-   !> Gives the place from the motion's origin, the velocity and the acceleration (2, 0:2) of a point, in the deck's
-   !> units. With the vector u from its link's origin o to the point:
+   !> Gives the position from the motion's origin, the velocity and the acceleration x, y (2, 0:2) of a point, in the
+   !> deck's units. With the vector u from its link's origin o to the point:
    !>   p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
    pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m
@@ -256,18 +263,20 @@ contains
       call add_rotating(u(1), u(2), x(3, 1), x(3, 2), p(:, 0), p(:, 1), p(:, 2))
    end function point_motion
 
-   !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
+   !> Finds the value of a measure and its first two derivatives by time. With d from point P to point Q, s its length,
+   !> w its angular velocity, and x x y = x1 y2 - x2 y1:
    !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
    !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
-   !> Between points of one link d is at rest in its axes, and a constant length has no rates, not even by rounding.
-   !> If two of its points coincide, values that do not exist are 0.
+   !> Between points of one link d is at rest in the link's axes, and a constant length has no rates, not even by
+   !> rounding. If two of its points coincide, values that do not exist are 0. A measure that continues takes that one
+   !> of all values of its angle that is nearest to its value in `turned`.
    pure recursive subroutine find_measure(m, q, i, values, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: i               !< its number
-      real(wp), intent(out) :: values(0:2)        !< length or rad; 0 where it does not exist
-      integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
-      real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
+      integer, intent(in) :: i               !< number of the measure
+      real(wp), intent(out) :: values(0:2)   !< length or rad, and derivatives; 0: does not exist
+      integer, intent(inout) :: state        !< becomes points_coincide if two of its points coincide
+      real(wp), intent(inout) :: closest     !< least distance of two points so far, characteristic lengths
       real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
       logical :: is_rigid
       integer :: k
@@ -342,8 +351,8 @@ contains
       end associate
    end subroutine find_measure
 
-   !> Finds the largest factor by which roundings of the motion grow in the measures, poles and curves of its mechanism,
-   !> in characteristic ones. In a centre at infinity or at rest they grow without limit.
+   !> Finds the largest factor by which relative roundings of the motion grow in the measures, poles and curves of a
+   !> mechanism, all in units of the characteristic length and rate. For a centre at infinity or at rest it is huge.
    pure real(wp) function amplification_in_rows(m, q, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
@@ -371,13 +380,14 @@ contains
       end do
    end function amplification_in_rows
 
-   !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
-   !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
-   !> times as much for the direction. If points coincide, nothing can grow: 0.
+   !> Finds the factor by which relative roundings of the motion grow in a measure, in units of the characteristic
+   !> length and rate. With v = |d'|/s and a = |d''|/s in characteristic rates, and d from point P to point Q, the
+   !> factor is 1 + v + v**2 + a for s = |d|, and 1/s times as much for the direction. If points coincide, the factor is
+   !> 0.
    pure recursive real(wp) function amplification_in_measure(m, q, i, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
-      integer, intent(in) :: i               !< its number
+      integer, intent(in) :: i               !< number of the measure
       real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
       real(wp) :: d(2, 0:2), distance, v
       integer :: k
@@ -400,10 +410,10 @@ contains
       end associate
    end function amplification_in_measure
 
-   !> Keeps the values of the measures that continue, from which the next instant goes on.
+   !> Stores the values of the measures that continue in a motion. The next instant goes on from these values.
    pure subroutine keep_turns(m, q)
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
+      type(motion_t), intent(inout) :: q     !< at an instant; its `turned` gets the values (rad)
       type(row_t) :: row
       integer :: i
 
@@ -420,7 +430,8 @@ contains
       end do
    end subroutine keep_turns
 
-   !> Gives a direction above -pi and up to pi. A direction that is -pi but for rounding becomes pi.
+   !> Gives a direction (rad) without whole turns, above -pi and up to pi. A direction that is -pi but for rounding
+   !> becomes pi.
    pure real(wp) function between_half_turns(angle) result(x)
       real(wp), intent(in) :: angle          !< rad
 
@@ -428,7 +439,7 @@ contains
       if (x <= half_turn_margin - pi) x = x + full_turn
    end function between_half_turns
 
-   !> Gives the coordinate of a pair with its derivatives (0:2): its slide (length) or its angle (rad).
+   !> Gives the coordinate of a pair with its first two derivatives by time (0:2): slide (length) or angle (rad).
    pure function motion_of_pair(m, q, i) result(s)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q

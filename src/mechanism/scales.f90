@@ -1,5 +1,5 @@
-!> The characteristic length and rate of a mechanism, from its deck alone. They make the tolerances of the solver and
-!> the digits of the listing the same in millimetres and in kilometres.
+!> The characteristic length and rate of a mechanism, only from its deck. With these the tolerances of the solver and
+!> the digits of the listing do not depend on whether the deck is in millimetres or in kilometres.
 module scales
    use kinds, only: wp
    use plane_vectors, only: point_of
@@ -12,8 +12,8 @@ module scales
 
 contains
 
-   !> Finds the characteristic length of a mechanism, in the deck's unit; 1 if the deck has no length. It is the largest
-   !> of these lengths, and does not depend on where the origin is:
+   !> Finds the characteristic length of a mechanism, in the deck's unit; 1 if the deck has no length. The origin of the
+   !> deck does not matter. The result is the largest of these lengths:
    !>
    !> - the extent of a link between its points (all ground links are one);
    !> - the offset of a prismatic pair;
@@ -25,8 +25,8 @@ contains
       if (.not. is_usable(length)) length = 1.0_wp
    end function characteristic_length
 
-   !> Finds the characteristic length for the equations: points that no pair and no drive uses do not count, unless
-   !> there is no other length.
+   !> Finds the characteristic length of a mechanism for its equations, in the deck's unit. Points that no pair and no
+   !> drive uses count only if there is no other length.
    pure real(wp) function solver_length(m) result(length)
       type(mechanism_t), intent(in) :: m
 
@@ -41,10 +41,11 @@ contains
       is_usable = value > 0.0_wp .and. value <= huge(value)
    end function is_usable
 
-   !> Finds the largest length of a mechanism, in the deck's unit; 0 if there is none.
+   !> Finds the largest length of a mechanism, in the deck's unit; 0 if there is none: the largest extent of a link
+   !> along x or y, offset of a guide, or first value of a drive of a length.
    pure real(wp) function largest_length(m, counts) result(length)
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: counts(:)       !< (points) the extents of links include the point
+      logical, intent(in) :: counts(:)       !< (points) the extent of its link includes the point
       real(wp), allocatable :: low(:, :), high(:, :)
       real(wp) :: place(2), origin(2), start
       integer :: i, k
@@ -60,7 +61,7 @@ contains
             place = point_of(m%links(k)%position - [origin, 0.0_wp], place)
             k = 0
          else
-            ! The origin of the link counts too: its estimated place is where the mechanism is.
+            ! The origin of the link counts too: the card estimates its position within the mechanism.
             low(:, k) = min(low(:, k), 0.0_wp)
             high(:, k) = max(high(:, k), 0.0_wp)
          end if
@@ -82,8 +83,8 @@ contains
    end function largest_length
 
    !> Estimates the largest rate of the drives at the instants, in rad per unit of time; rates of length are divided by
-   !> the characteristic length. It is 1 if nothing moves or the rate has no bound. An estimate is enough: it only
-   !> selects printed digits.
+   !> the characteristic length. The result is 1 if nothing moves or the rate has no bound. An estimate is enough: it
+   !> only selects printed digits.
    pure real(wp) function characteristic_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length         !< characteristic length, in the deck's unit
@@ -96,14 +97,14 @@ contains
       if (.not. is_usable(rate)) rate = 1.0_wp
    end function characteristic_rate
 
-   !> Finds the largest |t| of an instant, in the deck's unit of time.
+   !> Finds the largest |t| of all instants of a set, in the deck's unit of time; 0 without instants.
    pure real(wp) function latest_time(settings) result(t)
-      class(settings_t), intent(in) :: settings
+      class(settings_t), intent(in) :: settings   !< of a set or of a part of it
 
       t = max(abs(settings%t0), abs(settings%t1), maxval([0.0_wp, abs(settings%at)]))
    end function latest_time
 
-   !> Finds the largest power of two that is not above a value: division by it is exact.
+   !> Finds the largest power of two that is not above a value, in its unit: division by a power of two is exact.
    pure real(wp) function power_of_two(value) result(p)
       real(wp), intent(in) :: value          !< above 0, in any unit
 
@@ -112,7 +113,7 @@ contains
 
    !> Tells whether the coordinate of a drive is a length, not an angle.
    elemental logical function is_length(drive)
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< of any kind
 
       is_length = any(drive%kind == [drive_x, drive_y, drive_slide])
    end function is_length

@@ -1,4 +1,4 @@
-!> How far two positions or two motions of a mechanism are apart, and whether a motion closes.
+!> The differences of two positions or of two motions of a mechanism, and whether a motion closes.
 module separations
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -9,26 +9,28 @@ module separations
    private
    public :: separation, motions_apart, closes, closes_to
 
-   !> A motion closes if its end differs from its beginning by less, in characteristic lengths, rad and rates: a turn of
-   !> 6.2831853 rad is one.
+   !> A motion closes if its end differs from its beginning by at most this, in characteristic lengths, rad and
+   !> characteristic rates. A drive of 6.2831853 rad then makes a whole turn.
    real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
 
 contains
 
-   !> Finds how far two positions of all links are apart at most: places in `length`, and angles but for whole turns.
+   !> Finds the largest differences (2) of two positions of all links: of x and y, in `length`, and of angles (rad)
+   !> without whole turns.
    pure function separation(first, second, length) result(apart)
       real(wp), intent(in) :: first(:, :), second(:, :)   !< (3, links): x and y (length), phi (rad)
-      real(wp), intent(in) :: length         !< the unit of the result, in the deck's unit
+      real(wp), intent(in) :: length         !< the unit of the first result, in the deck's unit
       real(wp) :: apart(2)
 
       apart = [maxval(abs(first(:2, :) - second(:2, :)))/length, maxval(abs(wrap_angle(first(3, :) - second(3, :))))]
    end function separation
 
-   !> Finds how far two motions are apart at most: places, angles but for whole turns, and velocities, in characteristic
-   !> lengths, rad and rates. Huge if a position is not known. Velocities that are not unique count as alike.
+   !> Finds the largest differences (3) of two motions: of x and y in characteristic lengths, of angles in rad without
+   !> whole turns, and of velocities in characteristic lengths and rates. They are huge if a position is not known.
+   !> Velocities that are not unique count as equal.
    pure function motions_apart(m, first, last) result(apart)
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: first, last
+      type(motion_t), intent(in) :: first, last   !< of `m`, both of all links
       real(wp) :: apart(3), d(3, size(m%links)), length
 
       apart = huge(1.0_wp)
@@ -42,9 +44,9 @@ contains
       apart(3) = maxval(abs(d))/characteristic_rate(m, length)
    end function motions_apart
 
-   !> Tells whether a motion closes, by how far its end is from its beginning.
+   !> Tells whether a motion closes, from the differences of its end and its beginning.
    pure logical function closes(apart)
-      real(wp), intent(in) :: apart(:)       !< (1 to 3) places, angles, velocities, in the units of `motions_apart`
+      real(wp), intent(in) :: apart(:)       !< (1 to 3) of x and y, angles, velocities, as in `motions_apart`
 
       closes = all(apart <= closes_to)
    end function closes

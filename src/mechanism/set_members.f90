@@ -1,5 +1,5 @@
-!> Rows and drives of a set by their numbers in the order of the cards: what they are called and which law a drive has,
-!> in whatever part they are. Links, pairs, drives and tolerances of a part by their numbers there.
+!> Rows and drives of a divided set by their numbers in the order of the cards: their names, and the law of a drive, in
+!> any part. Links, pairs, drives and tolerances of a part by their numbers in the part.
 module set_members
    use kinds, only: wp, label_length
    use mechanism, only: drive_t, request_t, tolerance_t, shown_links, is_fixed
@@ -18,24 +18,24 @@ contains
 
    !> Gives the requests of all rows of a set, in the numbers of their parts.
    pure function requests_of(set) result(requests)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       type(request_t), allocatable :: requests(:)   !< (rows of the set)
       integer :: i
 
       requests = [(request_of(set, i), i=1, size(set%rows))]
    end function requests_of
 
-   !> Finds the form of a row.
+   !> Finds the form of a row of a set: row_link, ..., last_form.
    pure integer function row_form(set, i)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row in the set
 
       row_form = form_of(set%parts(set%rows(i)%part), request_of(set, i))
    end function row_form
 
-   !> Names the link, point, pair or measure of a row.
+   !> Names the link, point, pair or measure of a row of a set.
    pure function row_subject(set, i) result(name)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row in the set
       character(label_length) :: name
 
@@ -44,9 +44,9 @@ contains
       end associate
    end function row_subject
 
-   !> Names the link of the point of a row.
+   !> Names the link to which the point of a row belongs. The row must be about a point.
    pure function link_of_point(set, i) result(name)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row in the set
       character(label_length) :: name
 
@@ -55,20 +55,20 @@ contains
       end associate
    end function link_of_point
 
-   !> Finds the drive of a ratio: its number among all drives of the set; 0 if the row is no ratio.
+   !> Finds the drive of a row of ratios: the drive's number among all drives of the set; 0 if the row is no ratio.
    pure integer function ratio_drive(set, i)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the row in the set
-
       type(request_t) :: request
 
       request = request_of(set, i)
       ratio_drive = drive_number(set, set%rows(i)%part, request%drive)
    end function ratio_drive
 
-   !> Finds the numbers of the rows whose extremes are asked for, but those of the ground, which does not move.
+   !> Finds the numbers (any number) of the rows whose extremes are requested, without rows of the ground, which does
+   !> not move.
    pure function moving_extremes(set) result(asked)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, allocatable :: asked(:)
       type(request_t) :: requests(size(set%rows))
       integer :: i
@@ -78,9 +78,9 @@ contains
          .not. [(is_fixed(set%parts(set%rows(i)%part), requests(i)), i=1, size(requests))])
    end function moving_extremes
 
-   !> Gives the characteristic length of a part and its characteristic rate, 1 over the unit of time.
+   !> Gives the characteristic length of a part (deck's unit) and its characteristic rate (1 over the unit of time).
    pure function sizes_of(set, part) result(sizes)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: part            !< number of the independent mechanism
       real(wp) :: sizes(2)
 
@@ -88,20 +88,20 @@ contains
       sizes(2) = characteristic_rate(set%parts(part), sizes(1))
    end function sizes_of
 
-   !> Gives the tolerances of a part, if some number of the set has one.
+   !> Gives the tolerances (any number) of a part. Some number of the set must have a tolerance.
    pure function tolerances_of(set, part) result(tolerances)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: part            !< number of the independent mechanism
       type(tolerance_t), allocatable :: tolerances(:)
 
       tolerances = set%parts(part)%tolerances
    end function tolerances_of
 
-   !> Names links, without the blocks of slots.
+   !> Names links of a part (any number), without the blocks of slots, which have no names.
    pure function link_names(set, part, links) result(names)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: part            !< number of the independent mechanism
-      integer, intent(in) :: links(:)        !< numbers of the links there
+      integer, intent(in) :: links(:)        !< (any number) of the links in the part
       character(label_length), allocatable :: names(:)
 
       associate (own => set%parts(part))
@@ -109,10 +109,10 @@ contains
       end associate
    end function link_names
 
-   !> Names the pair of a diagnostic, or its measure.
+   !> Names the measure of a diagnostic or, if it has none, its pair. The diagnostic must have one of these.
    pure function name_in(set, diagnostic) result(name)
-      class(set_t), intent(in) :: set
-      type(diagnostic_t), intent(in) :: diagnostic
+      class(set_t), intent(in) :: set        !< a divided set
+      type(diagnostic_t), intent(in) :: diagnostic   !< about a pair or a measure
       character(label_length) :: name
 
       associate (own => set%parts(diagnostic%part))
@@ -123,51 +123,51 @@ contains
 
    !> Tells whether a set has cylinders.
    pure logical function has_cylinders(set)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer :: c
 
       has_cylinders = any([(any(set%parts(c)%pairs%is_cylinder), c=1, set%count)])
    end function has_cylinders
 
-   !> Gives a drive with its law. Assign the result: gfortran loses the memory of one that is used in an expression.
+   !> Gives a drive of a set with its law. Assign the result: in an expression gfortran does not free its memory.
    pure type(drive_t) function drive_of(set, i)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the drive in the set
 
       drive_of = set%parts(set%drives(i)%part)%drives(set%drives(i)%number)
    end function drive_of
 
-   !> Finds the number of a drive in the set.
+   !> Finds the number of a drive of a part among the drives of the set; 0: the part has no such drive.
    pure integer function drive_number(set, part, number)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: part            !< number of the independent mechanism
-      integer, intent(in) :: number          !< number of the drive there
+      integer, intent(in) :: number          !< number of the drive in the part
 
       drive_number = findloc(set%drives%part == part .and. set%drives%number == number, .true., dim=1)
    end function drive_number
 
-   !> Names a drive: its kind and the names of its links, point or pair.
+   !> Names a drive of a set: kind, and names of its links, point or pair.
    pure function drive_title(set, i) result(name)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the drive in the set
       character(:), allocatable :: name
 
       name = name_of_drive(set, set%drives(i)%part, set%drives(i)%number)
    end function drive_title
 
-   !> Names a drive of a part.
+   !> Names a drive of a part: kind, and names of its links, point or pair.
    pure function name_of_drive(set, part, number) result(name)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: part            !< number of the independent mechanism
-      integer, intent(in) :: number          !< number of the drive there
+      integer, intent(in) :: number          !< number of the drive in the part
       character(:), allocatable :: name
 
       name = trim(drive_name(set%parts(part), set%parts(part)%drives(number)))
    end function name_of_drive
 
-   !> Counts the drives of its mechanism before a drive that drive the same coordinate.
+   !> Counts the drives before a drive, in its independent mechanism, that drive its coordinate as well.
    pure integer function same_before(set, i) result(count_before)
-      class(set_t), intent(in) :: set
+      class(set_t), intent(in) :: set        !< a divided set
       integer, intent(in) :: i               !< number of the drive in the set
 
       associate (n => set%drives(i)%number, drives => set%parts(set%drives(i)%part)%drives)

@@ -11,15 +11,15 @@ module splines
 
    !> A natural cubic spline.
    type :: spline_t
-      real(wp), allocatable :: x(:), y(:), m(:)   !< (knots) abscissae, increasing; values; second derivatives
+      real(wp), allocatable :: x(:), y(:), m(:)   !< (knots) times, increasing; values; second derivatives
    end type spline_t
 
 contains
 
-   !> Makes the natural cubic spline through points.
+   !> Computes the natural cubic spline through points; two points give the straight line.
    function new_spline(times, values) result(s)
       real(wp), intent(in) :: times(:)       !< (knots, 2 or more) strictly increasing
-      real(wp), intent(in) :: values(:)      !< (knots) length or rad
+      real(wp), intent(in) :: values(:)      !< (knots) values at these times, length or rad
       type(spline_t) :: s
       real(wp) :: h(size(times) - 1), slope(size(times) - 1), diagonal(size(times) - 2), off(size(times) - 2)
       integer :: n, info
@@ -37,10 +37,10 @@ contains
       call ptsv(n - 2, 1, diagonal, off, s%m(2:n - 1), n - 2, info)
    end function new_spline
 
-   !> Gives the value and the first and second derivative (3) of a piece of a spline at a time, in the unit of its
-   !> values and the deck's unit of time. The cubic of the piece continues beyond its knots.
+   !> Computes the value and the first and second derivative (3) of a piece of a spline at a time, in the unit of its
+   !> values and the deck's unit of time. The cubic of the piece continues beyond the knots of the piece.
    pure function piece_value(spline, i, t) result(f)
-      type(spline_t), intent(in) :: spline
+      type(spline_t), intent(in) :: spline   !< as `new_spline` makes it
       integer, intent(in) :: i               !< number of the piece: between the knots i and i + 1
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
@@ -51,8 +51,8 @@ contains
       w = spline%x(i + 1) - t
       slope = (spline%y(i + 1) - spline%y(i))/h
       bend = (spline%m(i + 1) - spline%m(i))/h
-      ! From the nearer knot: there the value is exactly the value of the table. Near the knot, in a piece that is much
-      ! longer than its neighbour, no cubes of the long way cancel.
+      ! Counted from the nearer knot, at which the value is exactly the value of the table. Near the knot, in a piece
+      ! that is much longer than its neighbour, no cubes of the long distance cancel.
       if (u < w) then
          slope = slope - h*(2.0_wp*spline%m(i) + spline%m(i + 1))/6.0_wp
          f = [spline%y(i) + u*(slope + u*(spline%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(spline%m(i) + &
@@ -66,9 +66,10 @@ contains
       end if
    end function piece_value
 
-   !> Finds the piece i with x(i) <= t <= x(i + 1), by bisection; the first or the last if the time is beyond the table.
+   !> Finds the piece i of a spline with x(i) <= t <= x(i + 1), by bisection; the first or the last piece if the time is
+   !> beyond the table.
    pure integer function piece_at(spline, t) result(low)
-      type(spline_t), intent(in) :: spline
+      type(spline_t), intent(in) :: spline   !< as `new_spline` makes it
       real(wp), intent(in) :: t              !< time
       integer :: high, middle
 
