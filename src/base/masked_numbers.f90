@@ -1,4 +1,4 @@
-!> Numbers of which some digits are unknown, as text: a question mark stands for each unknown digit.
+!> Numbers with unknown digits, as text: a question mark stands for each unknown digit.
 module masked_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -19,8 +19,8 @@ module masked_numbers
 
 contains
 
-   !> Writes a number of which a limited number of digits is known: rounded to the last known digit, with later digits
-   !> masked. If all digits are known, the text is the text of `write_fixed`; if none is, one question mark.
+   !> Writes a number with a limited number of known digits: rounded to the last known digit, with later digits masked.
+   !> If all digits are known, the text is the text of `write_fixed`; if none is, one question mark.
    pure subroutine write_known(value, error, decimals, power, text, masked)
       real(wp), intent(in) :: value          !< the number, in any unit
       real(wp), intent(in) :: error          !< its estimated error, in the unit of `value`; 0: all digits are known

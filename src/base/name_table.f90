@@ -60,7 +60,7 @@ contains
 
    !> Finds the slot of a name: the slot that has the name or, if none has it, the free slot in which the name belongs.
    pure integer function slot_of(slots, name) result(k)
-      type(slot_t), intent(in) :: slots(:)   !< (power of two) those of a table, one of them free
+      type(slot_t), intent(in) :: slots(:)   !< (power of two) of a table; one slot at least is free
       character(*), intent(in) :: name   !< at most `label_length` characters count
       character(label_length) :: key
       integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64

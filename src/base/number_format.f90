@@ -5,9 +5,10 @@
 !> x 10**k is a sum p + e of two reals: 10**k is held as high + low, p = x high as rounded, and the rounding error of p
 !> follows from both factors split into halves whose products are exact (Dekker 1971, Veltkamp's splitting).
 !>
-!> For 0 <= k <= 22 there is no low part: p + e is exact, and so is the decision, halves included. For any other k the
-!> error is below 2**-104 p: 2**-106 p for low as rounded, as much for x low, 2**-105 p for its sum with e. What so
-!> small an error could change, and any other kind of real, is left to a format, which prints the same digits.
+!> For 0 <= k <= 22 there is no low part: p + e is exact, and the decision is exact, halves included. For any other k
+!> the error is below 2**-104 p: 2**-106 p for low as rounded, as much for x low, 2**-105 p for its sum with e.
+!> Decisions that so small an error could change, and other kinds of reals, are left to a format, which prints equal
+!> digits.
 module number_format
    use, intrinsic :: iso_fortran_env, only: int64
    use assertions, only: asserts, assert

@@ -1,4 +1,4 @@
-!> What equations are made of, in reals.
+!> Vectors, unknowns and numbers of the equations, in reals.
 #define NUMBER real(wp)
 #define IS(value) = value
 module number_types

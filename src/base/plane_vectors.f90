@@ -25,7 +25,7 @@ contains
    end function length_of
 
    !> Gives an angle in degrees. Degrees of a deck with at most precision(1.0_wp) digits come back as they were: several
-   !> numbers of degrees have one nearest number of radians, and the result is the one with the fewest digits. Any other
+   !> numbers of degrees have one nearest number of radians, and the result has the fewest digits. Any other
    !> angle is right within one rounding.
    pure elemental real(wp) function in_degrees(angle) result(d)
       real(wp), intent(in) :: angle          !< rad, or rad per unit of time to any power

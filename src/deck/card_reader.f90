@@ -1,5 +1,5 @@
-!> Reads a card to its labels, whole number and reals. Every field is checked; deck_... and card_sets give it a meaning.
-!> Harmless faults are remarks, all others errors.
+!> Reads a card to its labels, whole number and reals, and checks every field. The modules deck_... and card_sets give
+!> fields a meaning. Harmless faults are remarks, all others errors.
 module card_reader
    use kinds, only: wp, label_length
    use mechanism, only: remark_title_long, remark_title_letters, remark_touching
@@ -12,38 +12,38 @@ module card_reader
    private
    public :: parsed_card_t, read_card, read_star, refuse_field, find_long_label
 
-   !> A card as it was read. It is kept even if it is wrong, so that other cards find its names.
+   !> A card as it was read. A wrong card is kept too, so that other cards find its names.
    type :: parsed_card_t
       type(card_t) :: card
       type(card_t), allocatable :: star         !< the `*` card below it
-      integer :: form = form_unknown            !< its place in `card_forms`
-      logical :: valid = .true.                 !< it and its `*` card have no error of their own
-      logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
-      character(label_length) :: label(label_a:label_c) = ''
+      integer :: form = form_unknown            !< its index in `card_forms`
+      logical :: valid = .true.                 !< neither the card nor its `*` card has an error of its own
+      logical :: names_certain = .true.         !< its form and labels are as meant, even if it is not valid
+      character(label_length) :: label(label_a:label_c) = ''   !< in capitals
       integer :: whole = 0                      !< the whole number in a label field
-      logical :: whole_given = .false.          !< that field is not blank
+      logical :: whole_given = .false.          !< the field of the whole number is not blank
       real(wp) :: real(3) = 0.0_wp              !< in the deck's units; 0 where the field is blank
-      logical :: given(3) = .false.             !< which of them are not blank
-      logical :: on_star(3) = .false.           !< which of them are on the `*` card
+      logical :: given(3) = .false.             !< the field of the real is not blank
+      logical :: on_star(3) = .false.           !< the real is on the `*` card
       !> The number of the link, point (of JOINT the first), pair or drive that it defines; 0: none is built.
       integer :: subject = 0
-      !> Of a card of a drive's law the numbers of term and row of its table; of the DRIVE card 0.
+      !> Of an ADD or RISE card the number of its term, and its row in a table, otherwise 1; of other cards 0.
       integer :: term = 0, row = 0
-      integer :: below = 0                      !< the number of the card above it, TOLER and VARY left out; 0: none
+      integer :: below = 0                      !< number of the card above, TOLER and VARY left out; 0: none
    end type parsed_card_t
 
-   !> The largest length, angle or time: larger numbers have no use, and their squares would leave the range of reals.
+   !> The largest length, angle or time: larger numbers have no use, and their fourth powers could overflow.
    real(wp), parameter :: max_real = 10.0_wp**max_power
-   !> The smallest length, angle or time above zero, for the same reason.
+   !> The smallest length, angle or time above zero: fourth powers of smaller numbers could underflow.
    real(wp), parameter :: min_real = 10.0_wp**(-max_power)
 
 contains
 
-   !> Reads a card that is not a `*` card. Errors are added in the order of the columns.
+   !> Reads a card that is not a `*` card. Its errors are added in the order of the columns.
    subroutine read_card(card, parsed, errors)
-      type(card_t), intent(in) :: card
-      type(parsed_card_t), intent(out) :: parsed
-      type(input_errors_t), intent(inout) :: errors
+      type(card_t), intent(in) :: card       !< of any name but `*`
+      type(parsed_card_t), intent(out) :: parsed   !< the card as it was read, right or wrong
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: code
       character(:), allocatable :: name
       logical :: cut(size(card_fields))
@@ -57,6 +57,7 @@ contains
          parsed%label(i) = card%text(card_fields(i)%first:card_fields(i)%last)
          if (parsed%label(i)(1:1) <= ' ') parsed%label(i) = adjustl(parsed%label(i))
       end do
+
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
       call check_characters(parsed%card, parsed%names_certain, errors)
@@ -66,6 +67,7 @@ contains
          name = field_text(card, card_fields(card_name))
          parsed%form = find_form(name)
          near = nearest_word(capitals(name), card_forms%layout(:label_length))
+
          if (name == '') then
             call add_field_error(errors, field_blank, card, card_fields(card_name))
          else if (parsed%form /= form_unknown) then
@@ -86,7 +88,8 @@ contains
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before .and. parsed%form /= form_unknown
       if (.not. parsed%valid .or. parsed%form == form_title) return
-      ! The reals, and the labels that the card does not take, may hold the beginning of a number.
+
+      ! The reals, and the label fields that the card does not take, may hold the beginning of a number.
       call find_cuts(card, card_fields, 'L'//card_forms(parsed%form)%labels//'---', cut, errors)
       parsed%names_certain = .not. any(cut(label_a:label_c))
       call read_labels(parsed, cut(label_a:label_c), errors)
@@ -97,10 +100,10 @@ contains
       parsed%valid = errors%count == before
    end subroutine read_card
 
-   !> Tells whether a card is in free format: it has single blanks in place of columns, and a label with a blank. The
-   !> first such card of a deck must have a name that fills its field.
+   !> Tells whether a card is in free format: after its name all blanks are single, and a label field has a blank
+   !> inside. The first such card of a deck must also have a name that fills its field, and a blank after the name.
    pure logical function is_free(parsed, in_free_deck)
-      type(parsed_card_t), intent(in) :: parsed   !< its name is right
+      type(parsed_card_t), intent(in) :: parsed   !< a card with a known name
       logical, intent(in) :: in_free_deck    !< an earlier card of the deck was in free format
       integer :: i
 
@@ -112,12 +115,12 @@ contains
       end associate
    end function is_free
 
-   !> Adds the error of the first card of the deck in free format, about its second word. Further such cards have no
-   !> error.
+   !> Adds the error of the first card of the deck in free format, about its second word. Later cards in free format
+   !> have no error.
    subroutine refuse_free(card, form, errors)
       type(card_t), intent(in) :: card       !< in free format
       integer, intent(out) :: form           !< form_unknown
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: code
       integer :: first, finish
 
@@ -134,11 +137,11 @@ contains
          first, card%text(first:finish))
    end subroutine refuse_free
 
-   !> Makes the text of a TITLE card printable: with ? for a letter that is not ASCII, cut at the last column. Both
-   !> changes are remarks.
+   !> Makes the text of a TITLE card printable: with ? for each letter that is not ASCII, and cut at the last column.
+   !> Each of the two changes is a remark.
    subroutine read_title(card, errors)
-      type(card_t), intent(inout) :: card    !< a TITLE card
-      type(input_errors_t), intent(inout) :: errors
+      type(card_t), intent(inout) :: card    !< a TITLE card; its text changes
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       character(:), allocatable :: title
       integer :: i, first
 
@@ -158,16 +161,17 @@ contains
       card%overrun = 0
    end subroutine read_title
 
-   !> Reads a `*` card, and gives its reals to the card above it. Errors are added.
+   !> Reads a `*` card, and gives its reals to the card above it. Its errors are added in the order of the columns.
    subroutine read_star(card, above, errors)
       type(card_t), intent(in) :: card       !< the `*` card
-      type(parsed_card_t), intent(inout) :: above   !< the card above it
-      type(input_errors_t), intent(inout) :: errors
+      type(parsed_card_t), intent(inout) :: above   !< the card above; gets the reals, `on_star` and `star`
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       integer :: before, i
       logical :: clean, cut(3)
 
       before = errors%count
       call check_characters(card, clean, errors)
+
       if (errors%count > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
@@ -192,11 +196,12 @@ contains
       above%valid = above%valid .and. errors%count == before
    end subroutine read_star
 
-   !> Checks the characters of a card: the first one that is not printable ASCII or is past column 80 is an error.
+   !> Checks the characters of a card: the first character that is not printable ASCII, or is past column 80, is an
+   !> error.
    subroutine check_characters(card, clean, errors)
-      type(card_t), intent(in) :: card
+      type(card_t), intent(in) :: card       !< as it stands in the deck
       logical, intent(out) :: clean          !< columns 1 to 80 are printable ASCII
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(field_t) :: field
       integer :: column, last
 
@@ -215,29 +220,30 @@ contains
          field, column, field_text(card, field))
    end subroutine check_characters
 
-   !> Finds the fields whose text is cut by a border, and adds an error for each border. Text on both sides of a border
-   !> is in one of these cases:
+   !> Finds the fields whose text is cut by a border of fields, and adds an error for each such border. Text on both
+   !> sides of a border is in one of these cases:
    !>
    !> - a label fills its field: not cut;
    !> - a number fills its field, and is one number with the text after the border: cut;
-   !> - a number fills its field with an exponent of three digits or a sign and two, or the second has a sign: not cut;
+   !> - a number fills its field, and ends with an exponent of three digits or of a sign and two: not cut;
+   !> - a number fills its field, and the second number has a sign: not cut;
    !> - two numbers without signs between them fill their fields: not cut, a remark;
-   !> - a number fills its field, and the second does not: an error with both readings;
-   !> - a number does not fill its field, and the second has a sign: not cut, a remark;
+   !> - a number fills its field, and the second number does not: cut, an error with both readings;
+   !> - text does not fill its field, and a number with a sign follows: not cut, a remark;
    !> - any other text that does not fill its field: cut.
    subroutine find_cuts(card, fields, taken, cut, errors)
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: fields(:) !< in the order of their columns, each ending where the next one begins
-      character(*), intent(in) :: taken      !< for each field - if it takes no label: it may hold a number or its begin
-      logical, intent(out) :: cut(:)         !< (fields) its text is cut
-      type(input_errors_t), intent(inout) :: errors
+      type(card_t), intent(in) :: card       !< with the fields
+      type(field_t), intent(in) :: fields(:) !< in the order of their columns, without gaps
+      character(*), intent(in) :: taken      !< a character for each field; -: no label, perhaps a number
+      logical, intent(out) :: cut(:)         !< (fields) the text of the field is cut
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       integer :: i, start, finish, border
       logical :: numeric, fills
 
       cut = .false.
       do i = 1, size(fields) - 1
          border = fields(i)%last
-         ! No character comes before the blank, and to ask for equality with it costs a call.
+         ! No printable character comes before the blank; a test for equality with the blank would cost a call.
          if (cut(i) .or. card%text(border:border) <= ' ' .or. card%text(border + 1:border + 1) <= ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
@@ -247,10 +253,10 @@ contains
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
 
          if (fills .and. .not. is_real(card%text(start:finish))) then
-            ! Text that is no number has an error of its own.
+            ! Text that is not a number has an error of its own.
             if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
                .not. is_real(card%text(border + 1:finish))) cycle
-            ! An exponent of three digits, or of a sign and two, is complete: programs write it so.
+            ! An exponent of three digits, or of a sign and two, is complete: programs write exponents so.
             if (scan(card%text(border - 4:border - 4), 'EeDd') == 1) cycle
             if (scan(card%text(border - 3:border - 3), 'EeDd')*scan(card%text(border - 2:border - 2), '+-') == 1) cycle
             if (finish == fields(i + 1)%last) then
@@ -262,7 +268,7 @@ contains
             end if
             cycle
          else if (.not. fills .and. scan(card%text(border + 1:border + 1), '+-') == 1) then
-            ! The sign must not be that of the exponent of a number before it; after a label a number must follow.
+            ! The sign must not belong to the exponent of a number before it; after a label a number must follow.
             if (merge(scan(card%text(border:border), 'EeDd') == 0, is_real(card%text(border + 1:finish)), numeric)) then
                call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
                cycle
@@ -279,10 +285,10 @@ contains
       end do
    end subroutine find_cuts
 
-   !> Gives the readings of two numbers that touch at a border: as they stand, and the two numbers that they are if the
-   !> border was missed by one column.
+   !> Gives the readings of two numbers that touch at a border, for a message: cut at the border and, if both parts are
+   !> numbers then, cut one column after or before the border.
    pure function readings(first, second) result(text)
-      character(*), intent(in) :: first, second   !< the texts before and after the border
+      character(*), intent(in) :: first, second   !< the texts before and after the border, not empty
       character(:), allocatable :: text
       integer :: n
 
@@ -295,7 +301,7 @@ contains
       end if
    end function readings
 
-   !> Tells whether a text is a real number without an error.
+   !> Tells whether a text is a real number by the grammar of `numbers`.
    pure logical function is_real(text)
       character(*), intent(in) :: text       !< without blanks around it, not empty
       type(error_code_t) :: error
@@ -306,11 +312,11 @@ contains
       is_real = error%number == 0
    end function is_real
 
-   !> Reads the labels and the whole number of a card. Errors are added in the order of the columns.
+   !> Reads the labels and the whole number of a card. Its errors are added in the order of the columns.
    subroutine read_labels(parsed, cut, errors)
-      type(parsed_card_t), intent(inout) :: parsed
+      type(parsed_card_t), intent(inout) :: parsed   !< the card; gets its whole number, and labels without cut ones
       logical, intent(in) :: cut(label_a:label_c)   !< the label field has an error already
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: error
       character(1) :: taken
       integer :: i, last, place
@@ -320,6 +326,7 @@ contains
          if (cut(i)) parsed%label(i) = ''
          if (cut(i)) cycle
          taken = card_forms(parsed%form)%labels(i - card_name:i - card_name)
+
          associate (label => parsed%label(i), field => card_fields(i))
             last = len_trim(label)
             if (last == 0) then
@@ -330,6 +337,7 @@ contains
                parsed%whole_given = .true.
                call read_whole(label(:last), parsed%whole, error, place)
                if (error%number > 0) call refuse_number(parsed, parsed%card, i, field, error, place, errors)
+
             else if (index(label(:last), ' ') > 0) then
                parsed%names_certain = .false.
                call refuse_long_label(parsed, i, errors, is_long)
@@ -343,26 +351,28 @@ contains
       end do
    end subroutine read_labels
 
-   !> Adds the error of text in a field that the card does not take.
+   !> Adds the error of text in a field that the card does not take: the text belongs to a label that is too long, or
+   !> the field must be blank.
    subroutine refuse_field(parsed, i, errors)
-      type(parsed_card_t), intent(inout) :: parsed
+      type(parsed_card_t), intent(inout) :: parsed   !< the card; a long label makes its names uncertain
       integer, intent(in) :: i               !< the field: label_a, ..., real_3
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       logical :: is_found
 
       call refuse_long_label(parsed, i, errors, is_found)
       if (.not. is_found) call add_field_error(errors, field_unused, parsed%card, card_fields(i))
    end subroutine refuse_field
 
-   !> Adds the error of the number in a field.
+   !> Adds the error of a wrong number in a field: the text belongs to a label that is too long, the number has a comma,
+   !> or any other error of the number.
    subroutine refuse_number(parsed, card, i, field, error, place, errors)
-      type(parsed_card_t), intent(inout) :: parsed
+      type(parsed_card_t), intent(inout) :: parsed   !< the card; a long label makes its names uncertain
       type(card_t), intent(in) :: card       !< on which the number stands: its own card or the `*` card below it
       integer, intent(in) :: i               !< the field of `parsed`: label_a, ..., real_3
       integer, intent(in) :: place           !< number of the first wrong character of the number, from 1
       type(field_t), intent(in) :: field     !< the field of `card` in which the number stands
-      type(error_code_t), intent(in) :: error
-      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: error   !< of the number itself: number_...
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: code
       character(:), allocatable :: text
       integer :: comma
@@ -381,18 +391,18 @@ contains
       call add_field_error(errors, code, card, field, place=place)
    end subroutine refuse_number
 
-   !> Adds the error of a label that is longer than its field, if there is one before a field: its end is in the next
-   !> field, or has moved the labels after it.
+   !> Adds the error of a label that is longer than its field, if text in a given field shows such a label before it:
+   !> the end of the label stands in the given field, or has moved the labels after it.
    subroutine refuse_long_label(parsed, i, errors, is_found)
-      type(parsed_card_t), intent(inout) :: parsed
+      type(parsed_card_t), intent(inout) :: parsed   !< the card; a long label makes its names uncertain
       integer, intent(in) :: i               !< the field: label_a, ..., real_3
-      type(input_errors_t), intent(inout) :: errors
-      logical, intent(out) :: is_found       !< there is such a label
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
+      logical, intent(out) :: is_found       !< there is such a label, and its error is added
       character(:), allocatable :: word
       integer :: first, border
 
       is_found = .false.
-      ! It moves one label into the first real, and none beyond.
+      ! A long label can move one label into the first real, and none beyond.
       if (i > real_1 .or. (i == real_1 .and. card_forms(parsed%form)%labels(3:) == '-')) return
       do border = i, label_b, -1
          call find_long_label(parsed%card, border, first, word)
@@ -404,13 +414,13 @@ contains
       call add_error(errors, label_long, parsed%card, card_fields(border - 1), first, word)
    end subroutine refuse_long_label
 
-   !> Finds the word that begins in a label field and goes on in the next field. The longest words of LABEL-A fill their
-   !> field: a name begins after them.
+   !> Finds the word that begins in a label field and goes on in the next field. The words RELANGLE and MEASURES fill
+   !> LABEL-A: a name begins after them.
    pure subroutine find_long_label(card, i, first, word)
-      type(card_t), intent(in) :: card
-      integer, intent(in) :: i               !< the field in which it goes on: label_b, ..., real_1
-      integer, intent(out) :: first          !< its first column
-      character(:), allocatable, intent(out) :: word   !< '' if there is none
+      type(card_t), intent(in) :: card       !< as it stands in the deck
+      integer, intent(in) :: i               !< field in which the word goes on: label_b, ..., real_1
+      integer, intent(out) :: first          !< first column of the word, if there is one
+      character(:), allocatable, intent(out) :: word   !< the whole word; '': there is none
 
       word = ''
       first = 0
@@ -424,13 +434,14 @@ contains
       end associate
    end subroutine find_long_label
 
-   !> Reads a real number of a card from its field. A number that is wrong or out of bounds is an error.
+   !> Reads a real of a card from its field. A number that is wrong or out of bounds, or that the card does not take, is
+   !> an error.
    subroutine read_real_field(parsed, card, field, i, errors)
-      type(parsed_card_t), intent(inout) :: parsed
+      type(parsed_card_t), intent(inout) :: parsed   !< the card; gets the number
       type(card_t), intent(in) :: card       !< on which the number stands: its own card or the `*` card below it
-      type(field_t), intent(in) :: field     !< of `card`
+      type(field_t), intent(in) :: field     !< the field of the number on `card`
       integer, intent(in) :: i               !< number of the real, 1 to 3
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: error
       integer :: last, place
 

@@ -1,5 +1,6 @@
-!> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END: here
-!> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
+!> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END. Here
+!> are links, points and pairs. A card may use a name before the card that defines the name, so all names are looked up
+!> at END.
 module card_sets
    use kinds, only: wp
    use mechanism
@@ -18,31 +19,31 @@ module card_sets
       look_up_kinds, match_word
    public :: add_card_error, add_card_remark, real_text
 
-   !> The links, the points, the pairs or the measures of a set.
+   !> The links, the points, the pairs or the measures of a set, by number and by name.
    type :: named_t
-      integer, allocatable :: card(:)               !< the numbers of the cards that define them
-      type(name_table_t) :: table                   !< from their names to their places in `card`
+      integer, allocatable :: card(:)               !< (members) the numbers of the cards that define them
+      type(name_table_t) :: table                   !< from their names to their numbers: indices in `card`
    end type named_t
 
    !> The open set of computations.
    type :: card_set_t
       integer :: count = 0                          !< cards so far
-      type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
+      type(parsed_card_t), allocatable :: cards(:)  !< (count or more) the first `count` are in use
       integer :: number_of(0:form_end) = 0          !< cards of each form
-      logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      type(named_t) :: named(request_link:request_measure)
-      type(mechanism_t) :: mechanism
-      type(mechanism_t), allocatable :: drawing     !< it before lengths move points; without lengths not allocated
+      logical :: names_certain = .true.             !< of every card: no unknown name can be a misread one
+      type(named_t) :: named(request_link:request_measure)   !< by kind
+      type(mechanism_t) :: mechanism                !< made of the cards
+      type(mechanism_t), allocatable :: drawing     !< `mechanism` before lengths; without lengths not allocated
       type(input_errors_t) :: errors                !< all errors of the deck so far
    end type card_set_t
 
-   !> Characters of the longest text of a real, on a `*` card.
+   !> Characters of the longest text of a real: a field of a `*` card.
    integer, parameter :: real_length = wide_fields(1)%last - wide_fields(1)%first + 1
-   !> A form of the cards that define links, points, pairs or measures, and the label that has their name.
+   !> A form of the cards that define a link, point, pair or measure (`kind`), and the label field with its name.
    type :: definer_t
       integer :: kind = 0, form = 0, label = label_a
    end type definer_t
-   !> A JOINT card defines two points.
+   !> All forms of cards that define something. A JOINT card defines two points and a pair.
    type(definer_t), parameter :: definers(*) = [ &
       definer_t(request_link, form_ground), definer_t(request_link, form_link), definer_t(request_point, form_point), &
       definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
@@ -55,14 +56,15 @@ module card_sets
    !> The errors of names that no link, no point, no pair, no measure has.
    type(error_code_t), parameter :: unknown(request_link:request_measure) = &
       [link_unknown, point_unknown, pair_unknown, measure_unknown]
+   !> The words of the kinds in messages.
    character(*), parameter :: words_of_kinds(request_link:request_measure) = &
       [character(7) :: 'LINK', 'POINT', 'PAIR', 'MEASURE']
 
 contains
 
-   !> Empties a set for the next set of computations; the errors of the deck stay.
+   !> Empties a set for the next set of computations of the deck. The errors of the deck stay.
    subroutine begin_set(set, number)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: number          !< of the set in the deck, from 1
 
       if (.not. allocated(set%cards)) allocate (set%cards(64))
@@ -72,9 +74,9 @@ contains
       call begin_mechanism(set, number)
    end subroutine begin_set
 
-   !> Makes a set ready to build its mechanism from its cards, or to build it again.
+   !> Makes a set ready to build its mechanism from its cards, for the first time or again.
    subroutine begin_mechanism(set, number)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: number          !< of the set in the deck, from 1
       integer :: kind
 
@@ -86,7 +88,7 @@ contains
       if (allocated(set%drawing)) deallocate (set%drawing)
    end subroutine begin_mechanism
 
-   !> Finds the label field (label_a to label_c) in which the cards of a form have the name that they define.
+   !> Finds the label field, label_a to label_c, in which the cards of a form have the name that they define.
    pure integer function name_field(form)
       integer, intent(in) :: form            !< of cards that define a name: form_ground, ...
 
@@ -97,14 +99,14 @@ contains
    !> of each SLOT card, a point of the block, and its revolute pair. Repeated and unknown names are errors, and so are
    !> pairs that do not join two links.
    subroutine build_bodies(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       real(wp) :: unit
-      integer :: defined(form_unknown:form_end)   ! so many members of the kind has a card of the form
+      integer :: defined(form_unknown:form_end)   ! members of the kind that a card of the form defines
       integer :: kind, n, k, i, slots
 
       unit = angle_in_radians(set%mechanism)
       do kind = request_link, request_measure
-         ! In the order of the deck; twice those of a form that is there twice.
+         ! In the order of the deck; a card that defines two members is there twice.
          defined = 0
          do i = 1, size(definers)
             if (definers(i)%kind == kind) defined(definers(i)%form) = defined(definers(i)%form) + 1
@@ -141,8 +143,8 @@ contains
 
    contains
 
-      !> Builds pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. A pair that
-      !> does not join two links, or joins two ground links, is an error.
+      !> Builds pair number `n` from its REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points must have been built.
+      !> A pair that does not join two links, or joins two ground links, is an error.
       subroutine build_pair()
          real(wp) :: numbers(3)
          integer :: k, i, j
@@ -188,17 +190,18 @@ contains
          if (i == j .or. (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground)) then
             call add_card_error(set, pair_one_link, k, label_c)
          else if (any(set%mechanism%pairs(n)%drawn) .or. set%mechanism%pairs(n)%pin > 0) then
-            ! It has those numbers as drawn. The points of a cylinder must lie apart.
+            ! Numbers as drawn. The points of a cylinder must lie apart.
             call complete_from_drawing(set%mechanism, n)
             if (set%mechanism%pairs(n)%drawn(1) .and. coincides(set%mechanism, set%mechanism%pairs(n))) &
                call add_card_error(set, cylinder_points, k, label_b)
          end if
       end subroutine build_pair
 
-      !> Builds the block of the slot of a pair: the block turns with link i and about the point in the slot.
+      !> Builds the block of a SLOT card: its link, its point, and its revolute pair with the pin. The block slides
+      !> along the guide of link i and turns about the pin.
       subroutine build_block(n, pin)
-         integer, intent(in) :: n            !< the number of the pair
-         integer, intent(in) :: pin          !< the number of the point in the slot; 0: not known
+         integer, intent(in) :: n            !< number of the card's pair
+         integer, intent(in) :: pin          !< number of the point in the slot; 0: not known
 
          slots = slots + 1
          associate (m => set%mechanism, pair => set%mechanism%pairs(n), &
@@ -213,11 +216,11 @@ contains
       end subroutine build_block
    end subroutine build_bodies
 
-   !> Builds a point, of a POINT card, or one of the two points of a JOINT card, which gives their place in
-   !> the drawing. Both points have the name of the card, which stands for the point of the first link that is not
-   !> ground. The links are there.
+   !> Builds a point of a POINT card, or one of the two points of a JOINT card, which gives their position in the
+   !> drawing. Both points of a JOINT card have its name; in the table of names the name stands for the point of the
+   !> first link that is not ground. The links must have been built.
    subroutine build_point(set, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the point
       integer :: k, link
       logical :: is_first, is_ground
@@ -241,10 +244,11 @@ contains
       if (is_first .neqv. is_ground) call define_name(set, request_point, n)
    end subroutine build_point
 
-   !> Finds the joints of a link at which its axes begin and to which they point; numbers on its card come
-   !> first. The points are there.
+   !> Finds the joints FROM and TO of a link at which its axes begin and to which they point. Numbers on the LINK card
+   !> take precedence over these axes. The points must have been built. Joints that are not of the link, only one joint,
+   !> and joints at one position are errors.
    subroutine find_bar(set, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the link
       integer :: ends(2), k, label, one, i
 
@@ -266,7 +270,8 @@ contains
             if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
          end associate
       end do
-      ! A long name goes on in the field of FROM: it has an error of its own.
+
+      ! A long name that goes on in the field of FROM has an error of its own.
       label = findloc(set%cards(k)%label(label_b:), '        ', dim=1)
       if (label > 0 .and. set%names_certain) call add_card_error(set, field_blank, k, label_a + label)
       if (any(ends == 0)) return
@@ -279,9 +284,9 @@ contains
       end associate
    end subroutine find_bar
 
-   !> Finds the points of the card of a point: of a JOINT card both points, otherwise the point itself.
+   !> Finds the points that the card of a point defines: of a JOINT card both points, otherwise only the point itself.
    pure function joint_points(set, n) result(points)
-      type(card_set_t), intent(in) :: set
+      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
       integer, intent(in) :: n               !< the number of the point
       integer, allocatable :: points(:)      !< (1 or 2) their numbers
 
@@ -291,13 +296,13 @@ contains
       end associate
    end function joint_points
 
-   !> Puts the name on the card of a link, point, pair or measure into the table of names. A name that is there already
-   !> is an error, and so is the name of a pair for a measure. Two JOINT cards of one name have one error: the error of
-   !> their points.
+   !> Puts the name of a link, point, pair or measure from its card into the table of names. A name that another one of
+   !> its kind has is an error; the name of a pair for a measure is an error, too. Two JOINT cards of one name have only
+   !> one error: the error of their points.
    subroutine define_name(set, kind, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: kind            !< request_link, ..., request_measure
-      integer, intent(in) :: n               !< its number
+      integer, intent(in) :: n               !< number of the link, point, pair or measure
       integer :: k, other, earlier
 
       k = set%named(kind)%card(n)
@@ -320,15 +325,15 @@ contains
 
    !> Tells whether a set has the coordinates of a drawing, in which a blank number is as drawn.
    pure logical function has_drawing(set)
-      type(card_set_t), intent(in) :: set
+      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
 
       has_drawing = set%number_of(form_joint) > 0
    end function has_drawing
 
    !> Finds the link, point, pair or measure that a label of a card names. An unknown name is an error, unless a card
-   !> that could define it was not understood; a blank label is an error of its own.
+   !> that could define the name was not understood. A blank label finds nothing, without an error.
    subroutine look_up(set, kind, k, i, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: kind            !< request_link, ..., request_measure
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: i               !< of the label: label_a to label_c
@@ -338,16 +343,17 @@ contains
       call look_up_kinds(set, [kind], unknown(kind), k, i, found, n)
    end subroutine look_up
 
-   !> Finds the link, point, pair or measure of one of several kinds that a label of a card names. A name that no kind
-   !> has is an error, unless a card that could define it was not understood; a blank label is an error of its own.
+   !> Finds the link, point, pair or measure of one of several kinds that a label of a card names. An unknown name is an
+   !> error, with a hint, unless a card that could define the name was not understood. A blank label finds nothing,
+   !> without an error.
    subroutine look_up_kinds(set, kinds, code, k, i, kind, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: kinds(:)        !< request_link, ..., request_measure: the first that has the name counts
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      integer, intent(in) :: kinds(:)        !< (1 or more) request_link, ...: the first that has the name
       type(error_code_t), intent(in) :: code !< the error of an unknown name
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: i               !< of the label: label_a to label_c
       integer, intent(out) :: kind           !< one of `kinds`
-      integer, intent(out) :: n              !< its number; 0: none is found
+      integer, intent(out) :: n              !< number of the link, point, pair or measure; 0: none is found
       character(:), allocatable :: hint, word
       integer :: other, near, border, first, j
 
@@ -376,12 +382,14 @@ contains
             [(subject_name(set%mechanism, kinds(j), other), other=1, size(set%named(kinds(j))%card))])
          if (near > 0) hint = near_name(subject_name(set%mechanism, kinds(j), near))
       end do
+
       ! A name that goes on in the next field, or that began in the field before, if none of its parts is a name.
       do border = i, min(i + 1, label_c)
          call find_long_label(set%cards(k)%card, border, first, word)
          if (word == '') cycle
          if (is_name(border - 1) .or. is_name(border)) cycle
-         ! A name is near to itself with the last letter of the long one before it.
+         ! With a hint, a long label counts only if the label without its first letter, the end of the long label, is a
+         ! name: the hint is then this name.
          if (hint /= '' .and. all([(find_name(set%named(kinds(j))%table, set%cards(k)%label(i)(2:)) == 0, &
             j=1, size(kinds))])) cycle
          call add_error(set%errors, label_long, set%cards(k)%card, card_fields(border - 1), first, word)
@@ -394,7 +402,7 @@ contains
 
    contains
 
-      !> Tells whether a label of card `k` is the name of another card.
+      !> Tells whether a label of card `k` uses a name that another card defines.
       pure logical function is_name(label)
          integer, intent(in) :: label        !< label_a to label_c
 
@@ -405,12 +413,13 @@ contains
       end function is_name
    end subroutine look_up_kinds
 
-   !> Finds label A of a card among words. A label that is none of them is an error, if the card has no other error.
+   !> Finds the word that label A of a card is. A label that is none of the words is an error, unless the card has
+   !> another error.
    subroutine match_word(set, k, words, place)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
-      character(*), intent(in) :: words(:)   !< (1 or more) the words of which it must be one
-      integer, intent(out) :: place          !< its place in `words`; 0: none
+      character(*), intent(in) :: words(:)   !< (1 or more) the words that are allowed
+      integer, intent(out) :: place          !< index of the word in `words`; 0: none
       character(:), allocatable :: list
       integer :: i
 
@@ -425,11 +434,11 @@ contains
 
    !> Adds a remark about a field of a card.
    subroutine add_card_remark(set, kind, k, field, value)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: kind            !< remark_title_long, ...
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: field           !< card_name, label_a, ..., real_3
-      character(*), intent(in), optional :: value   !< the end of the sentence
+      character(*), intent(in), optional :: value   !< the end of the sentence, if it has one
       type(card_t) :: on
       type(field_t) :: at
 
@@ -439,11 +448,11 @@ contains
 
    !> Adds an error about a field of a card.
    subroutine add_card_error(set, code, k, field, more)
-      type(card_set_t), intent(inout) :: set
-      type(error_code_t), intent(in) :: code
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(error_code_t), intent(in) :: code !< the number and the sentence of the error
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: field           !< card_name, label_a, ..., real_3
-      character(*), intent(in), optional :: more   !< the end of the sentence
+      character(*), intent(in), optional :: more   !< the end of the sentence, if it has one
       type(card_t) :: on
       type(field_t) :: at
 
@@ -451,9 +460,9 @@ contains
       call add_field_error(set%errors, code, on, at, more)
    end subroutine add_card_error
 
-   !> Gives the text of a real number of a card, as it stands there.
+   !> Gives the text of a real of a card, as it stands on the card, left-adjusted; '' for a blank field.
    pure function real_text(card, i) result(text)
-      type(parsed_card_t), intent(in) :: card
+      type(parsed_card_t), intent(in) :: card   !< a card of the set
       integer, intent(in) :: i               !< number of the real, 1 to 3
       character(real_length) :: text
       type(card_t) :: on
@@ -463,9 +472,9 @@ contains
       text = on%text(first_column(on, at):at%last)
    end function real_text
 
-   !> Finds the place of a field of a card.
+   !> Finds the columns of a field, and the card on which they are: for a real of a `*` card, the `*` card.
    pure subroutine find_field(card, field, on, at)
-      type(parsed_card_t), intent(in) :: card
+      type(parsed_card_t), intent(in) :: card   !< a card of the set
       integer, intent(in) :: field           !< card_name, label_a, ..., real_3
       type(card_t), intent(out) :: on        !< the card itself or, for a real, the `*` card below it
       type(field_t), intent(out) :: at       !< its columns there

@@ -1,5 +1,5 @@
-!> One card: its 80 columns, its fields by column, and the forms of cards, that is which fields each card takes. Fields
-!> and forms are declared only here: a new card is one enumerator and one line of `card_forms`.
+!> One card: its 80 columns, its fields by column, and the forms of cards: which fields each card takes. Fields and
+!> forms are declared only here. A new card is one enumerator and one line of `card_forms`.
 module cards
    use kinds, only: label_length
    use failures, only: capitals
@@ -9,18 +9,18 @@ module cards
    !> Columns of a card.
    integer, parameter :: card_columns = 80
 
-   !> One line of the deck.
+   !> A card as it stands in the deck: one line.
    type :: card_t
-      integer :: number = 0                 !< number of its line in the deck, from 1
+      integer :: number = 0                 !< number of the line in the deck, from 1; 0: no card
       integer :: overrun = 0                !< first column past 80 that is not blank; 0: none
-      character(card_columns) :: text = ''  !< its columns
+      character(card_columns) :: text = ''  !< columns 1 to 80
       character(24) :: beyond = ''          !< the beginning of the text from column `overrun` on
    end type card_t
 
-   !> Some columns of a card.
+   !> A field: some columns of a card.
    type :: field_t
       character(8) :: name = ''             !< as messages and the ruler show it
-      integer :: first = 1, last = 0        !< columns
+      integer :: first = 1, last = 0        !< its first and its last column
    end type field_t
 
    !> The fields of a card in the order of their columns: field i + 1 begins where field i ends.
@@ -33,6 +33,7 @@ module cards
    !> The reals of a `*` card: wide enough for every double.
    type(field_t), parameter :: wide_fields(3) = &
       [field_t('REAL-1', 9, 32), field_t('REAL-2', 33, 56), field_t('REAL-3', 57, 80)]
+   !> The field of the TITLE card, in place of all labels and reals.
    type(field_t), parameter :: title_field = field_t('TITLE', 9, 80)
 
    !> The comment card that shows the columns of all fields.
@@ -46,10 +47,10 @@ module cards
       character(3) :: labels = '---'
       integer :: reals = 0           !< number of real fields, from REAL-1 on
       logical :: once = .false.      !< at most one such card in a set
-      character(78) :: layout = ''   !< the name of the card, then what each field holds, in its columns
+      character(78) :: layout = ''   !< the name of the card, then the word of each field in its columns
    end type form_t
 
-   !> The form of a card is its place in `card_forms`.
+   !> The forms of cards: indices in `card_forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_slot, form_cylinder, form_joint, form_drive, form_add, form_rise
@@ -59,7 +60,7 @@ module cards
       enumerator :: form_distance, form_line, form_angle, form_xi, form_eta, form_sum, form_end
    end enum
 
-   !> The text of TITLE is not a label.
+   !> The fields of all forms. The text of TITLE is not a label.
    type(form_t), parameter :: card_forms(form_end) = [ &
       form_t('---', 0, .true.,  'TITLE   TEXT, COLUMNS 9 TO 80'), &
       form_t('lll', 0, .true.,  'UNITS   LENGTH  RAD/DEG TIME'), &
@@ -106,10 +107,10 @@ module cards
 
 contains
 
-   !> Gives the text of a card in a field, without the blanks around it.
+   !> Gives the text of a card in a field, without blanks before and after the text; '' for a blank field.
    pure function field_text(card, field) result(text)
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
+      type(card_t), intent(in) :: card       !< a line of the deck
+      type(field_t), intent(in) :: field     !< columns of the card
       character(:), allocatable :: text
 
       text = trim(adjustl(card%text(field%first:field%last)))
@@ -117,22 +118,23 @@ contains
 
    !> Finds the column of the first character of a field that is not blank; the first column of a blank field.
    pure integer function first_column(card, field) result(column)
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
+      type(card_t), intent(in) :: card       !< a line of the deck
+      type(field_t), intent(in) :: field     !< columns of the card
 
       column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
    end function first_column
 
    !> Tells whether a card is a comment ($, # or ! before all else) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
-      type(card_t), intent(in) :: card
+      type(card_t), intent(in) :: card       !< a line of the deck
       integer :: first
 
       first = max(verify(card%text, ' '), 1)
       is_passed_over = scan(card%text(first:first), '$#!') > 0 .or. (card%text == '' .and. card%overrun == 0)
    end function is_passed_over
 
-   !> Gives the ruler and, below it, the layout of a card, or the layouts of all cards, the `*` card last.
+   !> Gives the ruler and, below it, the layout of a card, or the layouts of all cards, the `*` card last; lines are
+   !> joined by new_line('a'). An unknown name gives only the ruler.
    pure function layout_of(name) result(text)
       character(*), intent(in) :: name       !< of the card, in capitals or small letters; '': all cards
       character(:), allocatable :: text
@@ -156,14 +158,15 @@ contains
       if (any(word == ['POWER', 'TABLE'])) taken = 2
    end function reals_of
 
-   !> Gives the name of the cards of a form.
+   !> Gives the name that the cards of a form have in columns 1 to 8.
    pure character(label_length) function form_name(form)
       integer, intent(in) :: form            !< form_title, ..., form_end
 
       form_name = card_forms(form)%layout(:label_length)
    end function form_name
 
-   !> Finds the place of the first word that is near to a name; 0 if there is none.
+   !> Finds the index of the first word in a list that differs from a name by one slip of typing (`is_near`); 0 if there
+   !> is none.
    pure integer function nearest_word(name, words) result(place)
       character(*), intent(in) :: name       !< the name for which a word is sought
       character(*), intent(in) :: words(:)   !< (any number) the words
@@ -174,8 +177,8 @@ contains
       place = 0
    end function nearest_word
 
-   !> Tells whether a word becomes another one if one letter is changed, left out or added, or if two neighbours change
-   !> places. Two names of one letter have nothing in common.
+   !> Tells whether a word becomes another word if at most one letter is changed, left out or added, or if two
+   !> neighbouring letters are exchanged. Two names of one letter are never near.
    pure logical function is_near(word, other)
       character(*), intent(in) :: word, other   !< the two words
       character(max(len(word), len(other)) + 2) :: x, y
@@ -191,7 +194,7 @@ contains
       is_near = is_near .and. max(len_trim(word), len_trim(other)) > 1
    end function is_near
 
-   !> Finds the form of the cards of a name; form_unknown if no card has the name.
+   !> Finds the form of the cards with a given name; form_unknown if no form has this name.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name       !< in capitals or small letters
       character(label_length) :: word

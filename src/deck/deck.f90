@@ -1,4 +1,4 @@
-!> Reads a card deck to sets of computations. The whole deck is read and all its errors are reported; nothing is
+!> Reads a card deck to sets of computations. The whole deck is read, and all its errors are reported; nothing is
 !> computed from a deck with an error.
 module deck
    use mechanism, only: mechanism_t
@@ -19,31 +19,31 @@ module deck
    private
    public :: read_deck, read_deck_text, build_variant
 
-   !> The largest number of cards, with comments and blank cards.
+   !> The largest number of cards, with comments and blank cards: it bounds the memory.
    integer, parameter :: max_cards = 2000000
 
-   !> A set that has its END.
+   !> A set that has had its END card.
    type :: closed_t
       type(mechanism_t) :: mechanism
-      type(variation_t) :: variation              !< empty of a set without VARY cards
+      type(variation_t) :: variation              !< empty for a set without VARY cards
    end type closed_t
 
    !> The sets read so far.
    type :: reading_t
-      type(closed_t), allocatable :: sets(:)      !< (closed) and room for more
-      integer :: closed = 0                       !< number of those that have their END
+      type(closed_t), allocatable :: sets(:)      !< (closed or more) the first `closed` are in use
+      integer :: closed = 0                       !< number of sets that have had their END card
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
    end type reading_t
 
 contains
 
-   !> Reads the deck in a file. Errors: status_rejected (`report` has the reasons) or status_system.
+   !> Reads the deck in a file. A failure is status_rejected (`report` has the reasons) or status_system.
    subroutine read_deck(path, sets, report, failure, variations)
       character(*), intent(in) :: path       !< of the file; '' or '-': standard input
       type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: the deck is right
       type(variation_t), allocatable, intent(out), optional :: variations(:)   !< (sets) empty without VARY cards
       type(reading_t) :: progress
       type(source_t) :: source
@@ -53,12 +53,12 @@ contains
       if (present(variations)) variations = progress%sets(:progress%closed)%variation
    end subroutine read_deck
 
-   !> Reads a deck from a text. Errors: status_rejected (`report` has the reasons).
+   !> Reads the deck in a text. A failure is status_rejected (`report` has the reasons).
    subroutine read_deck_text(text, sets, report, failure)
       character(*), intent(in) :: text       !< lines that end in LF or CR-LF
       type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
-      type(failure_t), allocatable, intent(out) :: failure     !< status_rejected
+      type(failure_t), allocatable, intent(out) :: failure     !< status_rejected; not allocated: the deck is right
       type(reading_t) :: progress
       type(source_t) :: source
 
@@ -66,13 +66,13 @@ contains
       call read_sets(source, progress, sets, report, failure)
    end subroutine read_deck_text
 
-   !> Reads all sets of an open deck. If there is a failure, of opening the deck or of reading it, there are no sets.
+   !> Reads all sets of a deck. If opening the deck has failed, or reading fails, there are no sets.
    subroutine read_sets(source, progress, sets, report, failure)
-      type(source_t), intent(inout) :: source
-      type(reading_t), intent(inout) :: progress
-      type(mechanism_t), allocatable, intent(out) :: sets(:)
+      type(source_t), intent(inout) :: source   !< the open deck; not read if there is a failure
+      type(reading_t), intent(inout) :: progress   !< new; gets the sets and the errors
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
-      type(failure_t), allocatable, intent(inout) :: failure
+      type(failure_t), allocatable, intent(inout) :: failure   !< of opening the deck; otherwise of reading it
 
       allocate (progress%sets(4))
       call begin_set(progress%set, 1)
@@ -84,12 +84,12 @@ contains
       sets = progress%sets(:progress%closed)%mechanism
    end subroutine read_sets
 
-   !> Reads all cards of the deck, and closes its sets. Errors: status_system, and status_rejected for lines that are no
-   !> cards.
+   !> Reads all cards of a deck, and closes its sets. A failure is status_system, or status_rejected for a line that is
+   !> no card. A deck with too many cards, without cards, or without an END card at its end is an error of the deck.
    subroutine read_cards(source, progress, failure)
-      type(source_t), intent(inout) :: source
-      type(reading_t), intent(inout) :: progress
-      type(failure_t), allocatable, intent(out) :: failure
+      type(source_t), intent(inout) :: source   !< the open deck
+      type(reading_t), intent(inout) :: progress   !< gets the sets and the errors
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: all lines are read
       type(card_t) :: card, last
       logical :: found
 
@@ -105,6 +105,7 @@ contains
          last = card
          call add_card(card, progress)
       end do
+
       if (last%number == 0) then
          call add_error(progress%set%errors, deck_empty, card_t(), card_fields(card_name), 1, '')
       else if (progress%set%count > 0) then
@@ -114,10 +115,10 @@ contains
       end if
    end subroutine read_cards
 
-   !> Adds a card to the open set; an END card closes the set.
+   !> Adds a card to the open set, or its reals if it is a `*` card. An END card closes the set.
    subroutine add_card(card, progress)
-      type(card_t), intent(in) :: card
-      type(reading_t), intent(inout) :: progress
+      type(card_t), intent(in) :: card       !< neither blank nor a comment
+      type(reading_t), intent(inout) :: progress   !< its open set gets the card
       type(parsed_card_t), allocatable :: larger(:)
       integer :: n
 
@@ -138,6 +139,7 @@ contains
             call move_alloc(larger, set%cards)
          end if
          call read_card(card, set%cards(n), set%errors)
+
          if (set%cards(n)%form /= form_end) then
             if (n > 1) then
                set%cards(n)%below = n - 1
@@ -147,7 +149,7 @@ contains
             set%number_of(set%cards(n)%form) = set%number_of(set%cards(n)%form) + 1
             set%names_certain = set%names_certain .and. set%cards(n)%names_certain
          else
-            ! A card that was not understood may be the missing one.
+            ! A card that was not understood may be the missing card.
             if (set%names_certain .and. set%number_of(form_link) == 0) &
                call add_field_error(set%errors, link_missing, card, card_fields(card_name))
             if (set%names_certain .and. sum(set%number_of([form_time, form_at])) == 0) &
@@ -157,10 +159,11 @@ contains
       end associate
    end subroutine add_card
 
-   !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
-   !> for unused parts and for numbers that look wrong: a card with an error could make others look so.
+   !> Builds the mechanism and the variants of the open set from its cards, and opens the next set. Only a set without
+   !> errors is checked for unused links and points and for suspicious numbers: a card with an error could make others
+   !> look unused or suspicious.
    subroutine close_set(progress)
-      type(reading_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress   !< gets a closed set and an empty open one
       type(closed_t), allocatable :: larger(:)
       integer :: n
 
@@ -194,9 +197,9 @@ contains
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 
-   !> Builds the mechanism of a set from its cards.
+   !> Builds the mechanism of a set from its cards, and adds the errors of the cards to the set.
    subroutine build_mechanism(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards; gets the mechanism and the errors
 
       call build_options(set)
       call build_bodies(set)
@@ -209,12 +212,12 @@ contains
       call build_tolerances(set)
    end subroutine build_mechanism
 
-   !> Builds a variant, like a deck in which its numbers are typed.
+   !> Builds a variant of a set, as if its numbers stood in the deck.
    subroutine build_variant(variation, n, m, message)
-      type(variation_t), intent(inout) :: variation
+      type(variation_t), intent(inout) :: variation   !< of the set; its cards may get the numbers
       integer, intent(in) :: n               !< number of the variant, 1 to variation%total
       type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant; becomes the variant
-      character(:), allocatable, intent(out) :: message   !< its first error; '': none
+      character(:), allocatable, intent(out) :: message   !< first error of the variant, a sentence; '': none
       logical :: is_done
 
       message = ''
@@ -227,7 +230,7 @@ contains
          call check_measures(variation%set)
       end if
       message = error_report(variation%set%errors)
-      ! The lines before it show the card.
+      ! The lines before the first message show the card.
       if (len(message) > 0) message = message(index(message, ' *** ') + 5:)
       message = message(:index(message//new_line('a'), new_line('a')) - 1)
       m = variation%set%mechanism

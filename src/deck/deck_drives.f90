@@ -1,5 +1,5 @@
-!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at
-!> all instants, one of `check_terms`.
+!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_term` and, if the term does not
+!> exist at all instants, one case of `check_terms`.
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
@@ -20,10 +20,10 @@ module deck_drives
 
 contains
 
-   !> Builds the drives of a mechanism from the cards; its links, points and pairs are there. Drives of a coordinate
-   !> that cannot be driven, ADD and RISE cards without a drive, and wrong tables and rises are errors.
+   !> Builds the drives of a mechanism from the cards. Links, points and pairs must have been built. Errors are a drive
+   !> of a coordinate that cannot be driven, an ADD or RISE card without a drive, and wrong tables and rises.
    subroutine build_drives(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer :: k
 
       allocate (set%mechanism%drives(set%number_of(form_drive)))
@@ -41,7 +41,7 @@ contains
          end if
       end do
 
-      ! Without a value at t = 0 a drive has that of the drawing; the values of a table are absolute.
+      ! A drive whose value at t = 0 is blank starts from the drawing, but not with a table, whose values are absolute.
       if (set%errors%count > 0 .or. .not. has_drawing(set)) return
       do k = 1, set%count
          if (set%cards(k)%form /= form_drive .or. set%cards(k)%given(1)) cycle
@@ -54,7 +54,8 @@ contains
 
    contains
 
-      !> Counts the drives, the terms of each, which follow its card, and the rows of tables, and makes room for all.
+      !> Numbers the drives, the terms of each drive, which follow its card, and the rows of tables, on their cards.
+      !> Then makes room for all terms and rows.
       subroutine number_cards()
          integer :: n
 
@@ -75,6 +76,7 @@ contains
                end if
             end associate
          end do
+
          ! The last card of a drive has its last term, the last of a table its last row.
          do k = set%count, 1, -1
             associate (card => set%cards(k))
@@ -90,7 +92,7 @@ contains
          end do
       end subroutine number_cards
 
-      !> Gives the form of the card above a card; form_end if the card is the first of its set.
+      !> Gives the form of the card above a card, TOLER and VARY left out; form_end if the card is the first of its set.
       pure integer function form_above(k)
          integer, intent(in) :: k            !< number of the card
 
@@ -99,9 +101,10 @@ contains
       end function form_above
    end subroutine build_drives
 
-   !> Builds the drive of a DRIVE card: its kind, its coordinate, and its polynomial.
+   !> Builds the drive of a DRIVE card: kind, coordinate and polynomial. Errors are an unknown kind or name, a rate in
+   !> revolutions per minute in another unit of time, and a coordinate that cannot move.
    subroutine build_drive(set, k)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
       real(wp) :: minute
       integer :: kind, links(3), label, before
@@ -119,6 +122,7 @@ contains
             if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
             if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
          end if
+
          before = set%errors%count
          call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
          if (card%label(label_c) /= '' .and. .not. (kind == drive_relangle .or. takes_rpm) .and. card%valid .and. &
@@ -128,7 +132,7 @@ contains
             if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
          end if
 
-         ! What it drives must be something that can be driven, as far as it is known.
+         ! The coordinate must be able to move, as far as its links are known.
          if (drive%subject == 0) return
          label = merge(label_c, label_b, kind == drive_relangle)
          if (kind == drive_slide) then
@@ -143,9 +147,10 @@ contains
       end associate
    end subroutine build_drive
 
-   !> Builds the term of an ADD or RISE card, or the row of its table.
+   !> Builds the term of an ADD or RISE card, or one row of its table. An unknown kind, a blank card, a rise without a
+   !> duration, a table of one row and rows that are not in order of time are errors.
    subroutine build_term(set, k)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
       integer :: kind
 
@@ -178,18 +183,19 @@ contains
       end associate
    end subroutine build_term
 
-   !> Gives the unit of the coordinate of a drive: the deck's unit of angles in radians, or 1 for lengths.
+   !> Gives the deck's unit of the coordinate of a drive in the units of `mechanism_t`: of angles in rad, of lengths 1.
    pure real(wp) function unit_of(m, drive) result(unit)
       type(mechanism_t), intent(in) :: m
-      type(drive_t), intent(in) :: drive
+      type(drive_t), intent(in) :: drive     !< of `m`, with its kind
 
       unit = merge(angle_in_radians(m), 1.0_wp, .not. is_length(drive))
    end function unit_of
 
-   !> Puts the last instant of a TIME card that counts turns: the drive of constant rate has then turned so often. Other
-   !> drives must rest; a drive of another kind or law is an error.
+   !> Computes the last instant of a TIME card that counts turns: the drive with a rate has then made these turns.
+   !> Errors are several drives with a rate or none, a drive with a rate that is no angle or has terms or an
+   !> acceleration, and turns that do not change the time.
    subroutine set_turns(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer :: k, card
 
       card = findloc(set%cards(:set%count)%form, form_time, dim=1)
@@ -211,26 +217,27 @@ contains
       end associate
    end subroutine set_turns
 
-   !> Tells whether a card gives a term of the drive above it.
+   !> Tells whether a card is a term of a drive's law: ADD or RISE.
    pure logical function is_term(card)
-      type(parsed_card_t), intent(in) :: card
+      type(parsed_card_t), intent(in) :: card   !< of any form
 
       is_term = any(card%form == [form_add, form_rise])
    end function is_term
 
-   !> Tells whether a card is a row of a table.
+   !> Tells whether a card is a row of a table: ADD with the word TABLE.
    pure logical function is_row(card)
-      type(parsed_card_t), intent(in) :: card
+      type(parsed_card_t), intent(in) :: card   !< of any form
 
       is_row = card%form == form_add .and. card%label(label_a) == term_kinds(term_table)%word
    end function is_row
 
-   !> Checks the terms of all drives, in a set without errors. A term that does not exist at all instants, with its
-   !> first two derivatives, is an error.
+   !> Checks the terms of all drives of a set without errors, and computes the splines of tables. A term that does not
+   !> exist at all instants, with its first two derivatives, is an error; a power near the end of the range of reals is
+   !> an error, too.
    subroutine check_terms(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       real(wp) :: first, last, times(2)
-      !> The largest decimal logarithm of a power and its derivatives: far from the end of the range of reals.
+      !> The largest decimal logarithm of a power and its derivatives: less than half of the range of real64.
       real(wp), parameter :: max_power_logarithm = 120.0_wp
       integer :: k
 
@@ -240,7 +247,7 @@ contains
          associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
             if (term_kinds(term%kind)%has_rows) then
                term%table = new_spline(term%table%x, term%table%y)
-               ! As doubles: in real128 a double may lie outside by its rounding.
+               ! Compared as doubles: in real128 a time that is a double may lie outside by its rounding.
                if (real(first, dp) < real(term%table%x(1), dp)) call add_instant_error(table_range, first)
                if (real(last, dp) > real(maxval(term%table%x), dp)) call add_instant_error(table_range, last)
             else if (term%kind == term_power) then
@@ -253,6 +260,7 @@ contains
                      if (first <= 0.0_wp .and. last >= 0.0_wp) call add_instant_error(power_zero, 0.0_wp)
                   end if
                end associate
+
                ! R1 t**R2 and its derivatives stay far from the ends of the range of reals.
                times = abs([first, last])
                where (times <= 0.0_wp) times = 1.0_wp
@@ -271,9 +279,9 @@ contains
 
    contains
 
-      !> Adds an error of card `k` about an instant.
+      !> Adds an error of card `k` that ends with the time of an instant.
       subroutine add_instant_error(code, t)
-         type(error_code_t), intent(in) :: code
+         type(error_code_t), intent(in) :: code   !< number and sentence of the error
          real(wp), intent(in) :: t           !< time
          character(24) :: text
 
@@ -282,9 +290,9 @@ contains
       end subroutine add_instant_error
    end subroutine check_terms
 
-   !> Checks that the cylinder that a drive moves, if it moves one, has a length above 0 at the first instant.
+   !> Checks the cylinder of a drive, if the drive moves one: a length of 0 or less at the first instant is an error.
    subroutine check_cylinder(set, k)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the DRIVE card
       real(wp) :: f(3)
 

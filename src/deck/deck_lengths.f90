@@ -1,5 +1,5 @@
-!> The LENGTH cards of a set: the distances of two points of a link, or of the ground, that the drawing shows about
-!> there. Numbers as drawn are taken before.
+!> The LENGTH cards of a set: exact distances of two points of a link, or of the ground, which the drawing shows
+!> approximately. Numbers as drawn come from the drawing before lengths.
 module deck_lengths
    use kinds, only: wp
    use mechanism
@@ -16,16 +16,18 @@ module deck_lengths
 
 contains
 
-   !> Builds set%mechanism%lengths from the LENGTH cards, and puts these lengths into the drawing, which has bodies and
-   !> drives. The lengths of one hole Q are put together, holes in the order in which they first appear. Errors are:
+   !> Builds the lengths of a mechanism from the LENGTH cards, and applies them to the drawing. Bodies and drives must
+   !> have been built. The lengths of one hole Q are applied together, holes in the order in which they first appear.
+   !> Errors are:
+   !>
    !> - a length that is not of two points of one body;
-   !> - a hole that moves after its use;
-   !> - lengths that do not meet.
+   !> - a hole that moves after a length has used it;
+   !> - lengths that do not meet, or that later lengths change.
    subroutine build_lengths(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(length_t) :: lengths(set%number_of(form_length))
       type(reach_t) :: reached(set%number_of(form_length))
-      integer, allocatable :: card_of(:), order(:)     ! the card of each length; the lengths in their order
+      integer, allocatable :: card_of(:), order(:)     ! (lengths) the card of each; their order
       integer :: k, n, i, j
 
       if (set%number_of(form_length) == 0) return
@@ -74,8 +76,8 @@ contains
 
    contains
 
-      !> Checks a length in its order: its points are two holes, no length has used Q before it moves, and Q has at
-      !> most two lengths, from two holes.
+      !> Checks a length in its order: its points are two holes, no earlier length has used Q as its P, and Q has at
+      !> most two lengths, from two holes. Anything else is an error.
       subroutine check_order(i)
          integer, intent(in) :: i            !< number of the length
          integer :: used, one
@@ -95,7 +97,7 @@ contains
          end associate
       end subroutine check_order
 
-      !> Checks that a length holds after all have been put into the drawing.
+      !> Checks a length after all lengths have been applied: another distance of its points is an error.
       subroutine check_length(i)
          integer, intent(in) :: i            !< number of the length
          real(wp) :: place(2, 2), apart
@@ -111,20 +113,21 @@ contains
          end associate
       end subroutine check_length
 
-      !> Gives a length with its unit.
+      !> Gives a length as text, with the deck's unit.
       function amount(value) result(text)
-         real(wp), intent(in) :: value       !< length
+         real(wp), intent(in) :: value       !< in the deck's unit of length
          character(:), allocatable :: text
 
          text = drawn_text(value)//' '//trim(set%mechanism%length_unit)
       end function amount
    end subroutine build_lengths
 
-   !> Reads a LENGTH card: its points on one body, and its length. Errors are added.
+   !> Reads a LENGTH card: its points on one body, and its length. An unknown name, a blank or negative length, and
+   !> points that are not on exactly one common body, or cannot be moved, are errors.
    subroutine read_length(set, k, one)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: k            !< number of the card in the set
-      type(length_t), intent(inout) :: one
+      type(length_t), intent(inout) :: one   !< gets its points, its link and its length
       integer :: ends(2), link, i, label, common
       integer, allocatable :: p(:), q(:)
 

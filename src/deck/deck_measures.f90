@@ -1,5 +1,5 @@
-!> The cards DISTANCE, LINE, ANGLE, XI, ETA and SUM: the measures of a set. A measure may be named before the card that
-!> defines it, and a sum of sums is kept as the sum of their terms.
+!> The cards DISTANCE, LINE, ANGLE, XI, ETA and SUM: the measures of a set. A card may name a measure before the card
+!> that defines it. A sum of sums becomes the sum of all their terms.
 module deck_measures
    use kinds, only: wp
    use mechanism
@@ -15,11 +15,11 @@ module deck_measures
 
 contains
 
-   !> Builds the measures of a mechanism in the order of their cards; links, points and pairs are there. Unknown names
-   !> and sums of a length and an angle, or of themselves, are errors.
+   !> Builds the measures of a mechanism in the order of their cards. Links, points and pairs must have been built.
+   !> Unknown names are errors, and so are sums of a length and an angle and sums that contain themselves.
    subroutine build_measures(set)
-      type(card_set_t), intent(inout) :: set
-      integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 to do, 1 begun, 2 done
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 not begun, 1 begun, 2 done
       integer :: n, i
 
       if (size(states) == 0) return
@@ -34,7 +34,8 @@ contains
          end associate
          call define_name(set, request_measure, n)
       end do
-      ! All names are there.
+
+      ! All names are in the table now.
       do n = 1, size(states)
          associate (k => set%named(request_measure)%card(n), one => set%mechanism%measures(n))
             if (one%kind == measure_angle) then
@@ -53,6 +54,7 @@ contains
             end if
          end associate
       end do
+
       states = 0
       do n = 1, size(states)
          if (set%mechanism%measures(n)%kind == measure_sum) call add_up(n)
@@ -60,10 +62,10 @@ contains
 
    contains
 
-      !> Puts the terms of other sums in their place in a sum. A sum that contains itself, or adds a length and an
-      !> angle, is an error.
+      !> Replaces sums among the subjects of a sum by their terms, recursively, and finds the kind and the constant of
+      !> the sum. A sum that contains itself, or adds a length and an angle, is an error.
       recursive subroutine add_up(i)
-         integer, intent(in) :: i            !< number of the measure
+         integer, intent(in) :: i            !< number of the measure, a sum
          type(subject_t), allocatable :: own(:), terms(:), further(:)
          logical :: is_angle(2)
          integer :: j, k
@@ -72,7 +74,7 @@ contains
          k = set%named(request_measure)%card(i)
          associate (measure => set%mechanism%measures(i))
             if (states(i) == 1) then
-               ! It contains itself.
+               ! The sum contains itself.
                call add_card_error(set, sum_refused, k, label_a)
                measure%subjects = [subject_t ::]
                states(i) = 2
@@ -97,6 +99,7 @@ contains
                      measure%constant = measure%constant + own(j)%factor*one%constant
                   end associate
                end if
+
                call add_terms(further, terms)
             end do
 
@@ -113,9 +116,10 @@ contains
       end subroutine add_up
    end subroutine build_measures
 
-   !> Finds the lines or links of an ANGLE card.
+   !> Finds the two lines or links of an ANGLE card. An unknown name, a name of both a line and a link, and one name
+   !> twice are errors.
    subroutine find_sides(set, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the measure
       type(subject_t) :: sides(2)
       integer :: i, k, link
@@ -144,9 +148,10 @@ contains
       end associate
    end subroutine find_sides
 
-   !> Finds the summands of a SUM card, one or two.
+   !> Finds the summands of a SUM card, one or two pairs or measures, with their factors: 1 if blank. An unknown name,
+   !> and a factor without a summand, are errors.
    subroutine find_summands(set, n)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the measure
       type(subject_t) :: summands(2)
       integer :: i, k
@@ -163,10 +168,10 @@ contains
       end associate
    end subroutine find_summands
 
-   !> Adds terms to a list, in which each subject has one term.
+   !> Adds terms of a sum to a list in which each subject has one term: factors of one subject are added.
    subroutine add_terms(further, terms)
-      type(subject_t), intent(in) :: further(:)   !< (any number)
-      type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number)
+      type(subject_t), intent(in) :: further(:)   !< (any number) the terms
+      type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number) the list, longer afterwards
       integer :: i, j
 
       do i = 1, size(further)
@@ -179,10 +184,10 @@ contains
       end do
    end subroutine add_terms
 
-   !> Checks, in a set without errors, that all links of each measure are ground or of one independent mechanism. A link
-   !> that nothing uses is ground by now.
+   !> Checks the measures of a set without errors: a measure of links of several independent mechanisms is an error. A
+   !> link that nothing uses must have become ground before.
    subroutine check_measures(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer, allocatable :: part(:), parts(:)
       integer :: n, k
 

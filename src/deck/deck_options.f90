@@ -1,5 +1,5 @@
-!> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, PROVE, BRANCH, POLE and CURVE.
+!> Options, instants and requests of a set: the cards TITLE, UNITS, LANG and METHOD; TIME and AT; PRINT, COLUMN,
+!> EXTREMES, RANGE, CIRCUITS, ASSEMBLY, PROVE, BRANCH, POLE and CURVE.
 module deck_options
    use kinds, only: wp
    use parameters, only: angle_in_radians
@@ -17,35 +17,35 @@ module deck_options
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
-   !> A relative tolerance is above this: below, rounding prevents convergence.
+   !> A relative tolerance on a METHOD card is above this: with less, rounding prevents convergence.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
-   !> The largest relative tolerance: above, the result is no solution.
+   !> The largest relative tolerance on a METHOD card: with more, the result is no solution.
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
    !> The smallest closing tolerance (characteristic lengths, rad): equations that agree so well need none.
    real(wp), parameter :: min_closing = 1.0e-10_wp
-   !> The largest closing tolerance (characteristic lengths, rad): above, the result is no solution.
+   !> The largest closing tolerance (characteristic lengths, rad): with more, the result is no solution.
    real(wp), parameter :: max_closing = 1.0e-2_wp
    !> The word of a TIME card that counts turns of a drive.
    character(*), parameter :: turns_word = 'TURNS'
-   !> Words that can only be meant as a unit of angles.
+   !> Words that can only be meant as a unit of angles, in any field of UNITS.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
-   !> The cards of requests, in the order in which they are read.
+   !> The forms of cards of requests, in the order in which they are read.
    integer, parameter :: in_turn(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
-   !> The words of PRINT: 0 for everything, then the kinds request_link to request_measure.
+   !> The words of PRINT and EXTREMES: 0 for everything, then the kinds request_link to request_measure.
    character(*), parameter :: print_words(0:request_measure) = &
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
-   !> The word after these: ratios of pairs or measures.
+   !> The word of PRINT, COLUMN and EXTREMES for ratios of pairs or measures.
    character(*), parameter :: ratio_word = 'RATIOS'
-   !> The number of this word.
+   !> The number of this word, after the kinds.
    integer, parameter :: word_ratio = request_measure + 1
 
 contains
 
-   !> Sets the options and instants of a mechanism from the cards. Repeated cards, unknown words and values out of range
+   !> Sets the options and instants of a mechanism from its cards. Repeated cards, unknown words and values out of range
    !> are errors.
    subroutine build_options(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       real(wp) :: instants(3*set%number_of(form_at))
       integer :: first(size(card_forms)), k, i, n, place
 
@@ -101,6 +101,7 @@ contains
                   call add_card_error(set, word_unknown, k, label_b, turns_word)
                else if (.not. (card%given(2) .or. (card%given(1) .and. label(label_b) == ''))) then
                   call add_card_error(set, field_blank, k, real_2)
+
                else if (label(label_b) == turns_word) then
                   m%steps = card%whole
                   m%t0 = card%real(1)
@@ -133,20 +134,20 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds the requests of a mechanism from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards,
-   !> and from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the
-   !> first card counts. Unknown words and names and repeated cards are errors.
+   !> Builds the requests of a mechanism from its PRINT, COLUMN, EXTREMES, POLE and CURVE cards, each kind of cards in
+   !> the order of the deck. Bodies, measures and drives must have been built. For a subject of several PRINT or
+   !> EXTREMES cards the first card counts. Unknown words and names and repeated cards are errors.
    !>
    !> Without a PRINT or COLUMN card, all links that are not ground and all measures are printed. The listing of a
-   !> drawing then has its points as well, and of links without axes of their own only the angle.
+   !> drawing then has its points as well, and only the angle of links without axes of their own.
    subroutine build_requests(set)
-      type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of the same form
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of one form
       type(request_t), allocatable :: requests(:)
       type(column_request_t), allocatable :: columns(:)
-      integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
+      integer, allocatable :: number(:, :)          ! (number, kind) the request of a subject; 0: none yet
       integer, allocatable :: column_cards(:)       ! (columns) their cards
-      integer, allocatable :: part(:)               ! (links) their independent mechanisms, where ratios need them
+      integer, allocatable :: part(:)               ! (links) their parts; allocated if ratios need them
       integer :: k, n, i, j
 
       associate (sizes => [(size(set%named(k)%card), k=request_link, request_measure)])
@@ -156,12 +157,12 @@ contains
 
       n = 0
       allocate (columns(0), column_cards(0))
-      ! In a set of variants a COLUMN card alone prints nothing.
+      ! In a set of variants COLUMN cards print no rows: links and measures are requested without rows.
       if (set%number_of(form_print) == 0 .and. (set%number_of(form_column) == 0 .or. set%number_of(form_vary) > 0)) then
          call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
          if (set%number_of(form_joint) > 0 .and. set%number_of(form_vary) == 0) then
-            ! The places of a link whose axes are those of a drawing are those of the drawing's origin, carried along:
-            ! the listing has the points instead.
+            ! The axes of a link without axes of its own are the axes of the drawing: its x and y show the drawing's
+            ! origin, moved with the link. The listing has points instead.
             do i = 1, n
                requests(i)%angle_alone = .not. has_axes(requests(i)%subject)
             end do
@@ -210,8 +211,8 @@ contains
 
    contains
 
-      !> Gives the number of instants from one row to the next that a PRINT, POLE or CURVE card asks for. A number below
-      !> 1 is an error.
+      !> Gives the number of instants from one row to the next that a PRINT, POLE or CURVE card requests; 1 if blank. A
+      !> number below 1 is an error.
       integer function every(k)
          integer, intent(in) :: k            !< number of the card
 
@@ -219,10 +220,11 @@ contains
          if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
       end function every
 
-      !> Adds a request for each subject of a PRINT or EXTREMES card.
+      !> Adds a request for each subject of a PRINT or EXTREMES card. Errors are an unknown word or name, a repeated
+      !> card, and extremes of the ground.
       subroutine read_subjects(k, request)
          integer, intent(in) :: k            !< number of the card
-         type(request_t), intent(in) :: request   !< kind and subject do not count
+         type(request_t), intent(in) :: request   !< without kind and subject
          type(request_t) :: one
          integer, allocatable :: links(:), ratios(:)
          integer :: earlier, place
@@ -254,10 +256,11 @@ contains
                if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
                   call add_card_error(set, word_unknown, k, label_a, 'THE ITEMS OF THIS SET')
                call request_all(one)
+
             else
                call look_up(set, one%kind, k, label_b, one%subject)
                if (one%subject == 0) return
-               ! A pair moves. The links of a measure are sure in a deck without errors.
+               ! A pair always moves. The links of a measure are certain only in a deck without errors.
                if (one%extremes .and. one%kind /= request_pair .and. &
                    (one%kind /= request_measure .or. set%errors%count == 0)) then
                   links = request_links(set%mechanism, one)
@@ -270,9 +273,10 @@ contains
          end associate
       end subroutine read_subjects
 
-      !> Adds a request for each link, point, pair or measure of a kind, but not for ground links.
+      !> Adds a request for each link, point, pair or measure of a kind, except ground links. A JOINT card has one
+      !> point.
       subroutine request_all(request)
-         type(request_t), intent(in) :: request   !< of this kind; its subject does not count
+         type(request_t), intent(in) :: request   !< of this kind, without a subject
          type(request_t) :: one
          integer :: i, j
 
@@ -281,22 +285,22 @@ contains
             if (one%kind == request_link) then
                if (set%mechanism%links(i)%ground) cycle
             else if (one%kind == request_point) then
-               ! Of the two points of a JOINT card, the one that its name stands for.
+               ! Of the two points of a JOINT card, only the point for which its name stands.
                if (find_name(set%named(one%kind)%table, set%mechanism%points(i)%name) /= i) cycle
             end if
             one%subject = i
             one%sought = .true.
-            ! The places of axes that nobody has placed are no question.
+            ! Extremes of x and y of axes that no card has placed are not sought.
             if (one%kind == request_link .and. has_drawing(set)) one%sought(:2, :) = has_axes(i)
             call add_request(one, j)
          end do
       end subroutine request_all
 
-      !> Adds a request. If its row has a request already, that request gets its extremes: of the numbers that it seeks,
-      !> and of the numbers that COLUMN cards name.
+      !> Adds a request. If its row has a request already, the earlier request gets the extremes: of the numbers that
+      !> the new request seeks, and of the numbers that COLUMN cards name.
       subroutine add_request(request, i)
-         type(request_t), intent(in) :: request
-         integer, intent(out) :: i           !< the number of the request of that row
+         type(request_t), intent(in) :: request   !< with its kind and its subject
+         integer, intent(out) :: i           !< number of the request of this row
 
          if (request%drive == 0) then
             i = number(request%subject, request%kind)
@@ -305,7 +309,7 @@ contains
                requests(:n)%subject == request%subject, .true., dim=1)
          end if
          if (i == 0) then
-            ! All other requests keep their room.
+            ! Only ratios need more room than was allocated.
             if (request%drive > 0) requests = [requests, request]
             n = n + 1
             i = n
@@ -323,15 +327,16 @@ contains
          requests(i)%sought = requests(i)%sought .or. request%sought
       end subroutine add_request
 
-      !> Tells whether the card of a link gives the place of its axes.
+      !> Tells whether the card of a link gives the position of its axes: by numbers, or by FROM and TO.
       pure logical function has_axes(i)
          integer, intent(in) :: i            !< the number of the link
 
          has_axes = any(set%cards(set%named(request_link)%card(i))%given) .or. set%mechanism%links(i)%from > 0
       end function has_axes
 
-      !> Reads a COLUMN card: one number of a row, or its coordinates if the card names no quantity. If the axes of a
-      !> link are the axes of the drawing, its only coordinate is its angle.
+      !> Reads a COLUMN card: one number of a row or, if the card names no quantity, all coordinates of the row. For a
+      !> link without axes of its own the only coordinate is the angle. An unknown word, name or quantity, and a
+      !> repeated column, are errors.
       subroutine read_column(k)
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t) :: request
@@ -370,10 +375,11 @@ contains
             call add_card_error(set, word_unknown, k, label_c, words)
       end subroutine read_column
 
-      !> Adds a request for each ratio that a card names: of a pair or measure, or of all pairs and measures.
+      !> Adds a request for each ratio that a card names: of one pair or measure, or of all pairs and measures. An
+      !> unknown name is an error.
       subroutine read_ratios(k, request, list)
          integer, intent(in) :: k            !< the number of the card in the set
-         type(request_t), intent(in) :: request   !< kind and subject do not count
+         type(request_t), intent(in) :: request   !< without kind and subject
          integer, allocatable, intent(out) :: list(:)   !< (any number) the numbers of the requests for these ratios
          integer :: kind, subject
 
@@ -391,17 +397,18 @@ contains
       end subroutine read_ratios
 
       !> Adds a request for the ratio of a pair or measure by each drive of its independent mechanism. The structure
-      !> shows later which of these drives can move it.
+      !> shows later which of these drives can move the pair or measure. Extremes with several drives are an error. In a
+      !> deck with errors nothing is added.
       subroutine add_ratios(k, request, kind, subject, list)
          integer, intent(in) :: k            !< the number of the card in the set
-         type(request_t), intent(in) :: request   !< kind and subject do not count
+         type(request_t), intent(in) :: request   !< without kind and subject
          integer, intent(in) :: kind         !< request_pair or request_measure
          integer, intent(in) :: subject      !< number of the pair or measure
-         integer, allocatable, intent(inout) :: list(:)   !< (any number) gets the numbers of the requests
+         integer, allocatable, intent(inout) :: list(:)   !< (any number) gets these requests' numbers
          type(request_t) :: one
          integer :: i, j
 
-         ! The links of the quantity are sure in a deck without errors.
+         ! The links of the quantity are certain only in a deck without errors.
          if (set%errors%count > 0) return
          one = request
          one%kind = kind
@@ -420,10 +427,10 @@ contains
          end associate
       end subroutine add_ratios
 
-      !> Finds the drives of the independent mechanism of the pair or measure of a request.
+      !> Finds the drives of the independent mechanism to which the pair or measure of a request belongs.
       function drives_of(request) result(list)
-         type(request_t), intent(in) :: request
-         integer, allocatable :: list(:)     !< their numbers
+         type(request_t), intent(in) :: request   !< of a pair or measure
+         integer, allocatable :: list(:)     !< (any number) their numbers
          integer :: own, i
 
          if (.not. allocated(part)) part = part_of_links(set%mechanism)
@@ -434,7 +441,8 @@ contains
          end associate
       end function drives_of
 
-      !> Reads a COLUMN card of ratios: VALUE, or the derivative DERIV, by each drive.
+      !> Reads a COLUMN card of ratios: the ratio (VALUE or blank) or its derivative (DERIV), by each drive. Any other
+      !> quantity is an error.
       subroutine read_ratio_columns(k)
          integer, intent(in) :: k            !< the number of the card in the set
          integer, allocatable :: list(:)
@@ -453,10 +461,10 @@ contains
          end do
       end subroutine read_ratio_columns
 
-      !> Adds a column of a COLUMN card. A column that is there already is an error.
+      !> Adds a column of a COLUMN card. A column that an earlier card has added is an error.
       subroutine add_column(k, column)
          integer, intent(in) :: k            !< the number of the card in the set
-         type(column_request_t), intent(in) :: column
+         type(column_request_t), intent(in) :: column   !< of a request of the set
          integer :: i
 
          i = findloc(columns%request == column%request .and. columns%at(1) == column%at(1) .and. &
@@ -478,15 +486,15 @@ contains
          end do
       end function numbers_in_columns
 
-      !> Adds the extremes of all numbers that COLUMN cards name to their requests. A subject whose extremes an earlier
-      !> card has requested keeps its request.
+      !> Adds extremes to the requests of all rows in columns: of the numbers that COLUMN cards name. A request that has
+      !> extremes of an earlier card stays as it is.
       subroutine seek_columns(request)
-         type(request_t), intent(in) :: request   !< kind and subject do not count
+         type(request_t), intent(in) :: request   !< with its dwells; kind and subject do not count
          integer :: i
 
          do i = 1, n
             if (.not. requests(i)%in_columns .or. requests(i)%extremes) cycle
-            ! The ratios of a mechanism with several drives are not searched.
+            ! Ratios in a mechanism with several drives are not searched.
             if (requests(i)%drive > 0) then
                if (size(drives_of(requests(i))) > 1) cycle
             end if
@@ -497,10 +505,11 @@ contains
       end subroutine seek_columns
    end subroutine build_requests
 
-   !> Builds the branch requests of a mechanism from the BRANCH cards, in their order; links and options are there. A
-   !> card with the link and time of an earlier card is an error: it may be meant for the next change point.
+   !> Builds the branch requests of a mechanism from its BRANCH cards, in their order. Links and options must have been
+   !> built. Errors are another method than NEWTON, an unknown or ground link, a blank time, and the link and time of an
+   !> earlier card, which may be meant for the next change point.
    subroutine build_branches(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(branch_request_t) :: requests(set%number_of(form_branch))
       integer :: card_of(set%number_of(form_branch)), k, n, i
 
@@ -518,6 +527,7 @@ contains
             if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
             request%t = set%cards(k)%real(1)
          end associate
+
          i = findloc(requests(:n - 1)%link == requests(n)%link &
             .and. .not. abs(requests(:n - 1)%t - requests(n)%t) > 0.0_wp, .true., dim=1)
          if (i > 0) call add_card_error(set, repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
@@ -525,10 +535,10 @@ contains
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
 
-   !> Checks, in a set without errors, that each pole and curve is of two links of one independent mechanism that move
-   !> relative to one another; otherwise it is an error. A link that nothing uses is ground by now.
+   !> Checks the poles and curves of a set without errors. Two links without relative motion, or of two independent
+   !> mechanisms, are an error. A link that nothing uses must have become ground before.
    subroutine check_centres(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(request_t) :: one
       integer, allocatable :: part(:)
       integer, allocatable :: links(:)
@@ -550,10 +560,10 @@ contains
       end do
    end subroutine check_centres
 
-   !> Gives the word of a column on COLUMN cards.
+   !> Gives the word of a column on COLUMN cards: VALUE, VX, PHI, ...
    pure character(8) function quantity_of(form, j) result(word)
       integer, intent(in) :: form            !< of the rows: row_link, ...
-      integer, intent(in) :: j               !< the column, in `columns_of_rows`
+      integer, intent(in) :: j               !< index of the column in `columns_of_rows`
 
       word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)
       if (word == '') word = columns_of_rows(j)%english(:len(word))

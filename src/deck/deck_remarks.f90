@@ -1,6 +1,6 @@
 !> The echo of a set without errors in the listing, and remarks about its cards. The echo has the cards as they were
-!> understood, with the values in use. Remarks are about faults that are harmless or probably not meant: names that
-!> nothing uses, degrees for radians, and in a deck with JOINT cards numbers that contradict the drawing.
+!> understood, with the values in use. Remarks are about harmless faults and about numbers that are probably not meant:
+!> names that nothing uses, degrees for radians, and in a deck with JOINT cards numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
    use plane_vectors, only: full_turn, in_degrees, wrap_angle
@@ -21,45 +21,45 @@ module deck_remarks
    private
    public :: check_unused, check_angles, check_drives, check_drawing, build_echo, drawn_text
 
-   !> Characters of a line of the echo.
+   !> Characters of a line of the echo: a line of the listing has 120, with the blank before the text.
    integer, parameter :: echo_length = 119
-   !> Characters of a real in it.
+   !> Characters of a real in the echo: a field of a `*` card and a blank.
    integer, parameter :: real_width = 25
-   !> Column of the first real in it.
+   !> Column of the first real in the echo: after the name, three labels and four blanks.
    integer, parameter :: real_column = 37
    !> The end of the line of a default.
    character(*), parameter :: default_mark = '(DEFAULT)'
    !> The words after a number that is as drawn, in English and in Polish ("according to the drawing").
    character(*), parameter :: drawn_marks(2) = ['(AS DRAWN)', '(WG RYS.) ']
-   !> The words after a number of axes along a bar, in English and in Polish.
+   !> The words after a number that axes along a bar give, in English and in Polish.
    character(*), parameter :: bar_marks(2) = ['(FROM TO)', '(OD DO)  ']
    !> The words before the coordinates to which a length has moved a point.
    character(*), parameter :: axis_words(2) = ['X = ', 'Y = ']
-   !> The numbers of links whose axes are the axes of the drawing, in the listing.
+   !> The numbers that the listing has of links whose axes are the axes of the drawing.
    character(*), parameter :: angles = 'PHI, VPHI, APHI'
-   !> The words after these, if only some links are such.
+   !> The words after these numbers if only some links have such axes.
    character(*), parameter :: of_some = ' OF THOSE WITHOUT NUMBERS'
 
-   !> Angles beyond this are no degrees that someone has read from a drawing.
+   !> Larger angles are not degrees that someone has read from a drawing: two turns.
    real(wp), parameter :: max_degrees = 720.0_wp
-   !> Digits of a number as drawn, as far as its kind has them.
+   !> Digits of a number as drawn: more than a drawing has, at most as many as the reals have.
    integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
 
-   !> TIME is halved at most so often to find the greatest rate of a law.
+   !> TIME is halved at most so often to find the greatest rate of a law: then a part is 1/65536 of TIME.
    integer, parameter :: rate_halvings = 16
 
-   !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
-   !> characteristic length, contradicts nothing.
+   !> A closure error below this (rad, or parts of the characteristic length) does not contradict a drawing: coordinates
+   !> measured in a drawing have some four digits.
    real(wp), parameter :: drawn_digits = 1.0e-4_wp
-   !> Axes that are turned by less, in rad, have no other angle in a remark.
+   !> Axes that are turned by less (rad) have the direction of the drawing: the remark would show equal angles.
    real(wp), parameter :: same_direction = 1.0e-9_wp
 
 contains
 
-   !> Adds a remark on each link without a pair or a drive, which then rests, and on each point without a pair, a drive,
-   !> a measure or a PRINT card. If no link is left that moves, this is an error.
+   !> Adds a remark on each link without a pair or a drive, which becomes ground, and on each point without a pair,
+   !> drive, measure, length or request. If no moving link is left, this is an error.
    subroutine check_unused(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
       integer :: i
 
@@ -90,10 +90,11 @@ contains
       end do
    end subroutine check_unused
 
-   !> Adds a remark on the first angle in radians that looks like degrees: it is beyond a turn, at most `max_degrees`,
-   !> and a whole number or a half. The numbers of ADD cards are not read from drawings, and do not count.
+   !> Adds a remark on the first angle in radians that looks like degrees: above a turn, at most `max_degrees`, and a
+   !> whole number or half of one. Numbers of ADD cards are not read from drawings, and do not count. If the set is in
+   !> degrees, there is no remark.
    subroutine check_angles(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(parameter_t) :: number
       type(unit_t) :: unit
       integer :: k, i
@@ -114,11 +115,11 @@ contains
       end do
    end subroutine check_angles
 
-   !> Adds a remark on all drives if none moves within TIME, and on the first drive that turns an angle once or more in
-   !> a step of TIME. If VARY cards change a drive or TIME, drives may rest.
+   !> Adds a remark on all drives if none moves within TIME, and a remark on the first drive that makes a turn or more
+   !> in one step of TIME. If VARY cards change a drive or TIME, all drives may rest. A set without TIME has no remarks.
    subroutine check_drives(set)
-      type(card_set_t), intent(inout) :: set
-      !> One turn but for roundings.
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      !> A part of one turn that counts as one turn: one turn but for roundings.
       real(wp), parameter :: about_one = 1.0_wp - 1.0e3_wp*epsilon(1.0_wp)
       real(wp) :: step, rate
       logical :: varies
@@ -149,10 +150,10 @@ contains
 
    contains
 
-      !> Tells whether a drive does not move within TIME. Bounds of the rate of a table include roundings of its values:
-      !> a table of equal values counts as zero.
+      !> Tells whether a drive does not move within TIME. A table of equal values counts as zero: bounds of its rate
+      !> would include roundings of the values.
       pure logical function rests(drive)
-         type(drive_t), intent(in) :: drive
+         type(drive_t), intent(in) :: drive  !< of the set
          type(drive_t) :: law
          integer :: i
 
@@ -168,10 +169,10 @@ contains
          rests = is_at_rest(law, set%mechanism%t0, set%mechanism%t1)
       end function rests
 
-      !> Adds a remark about drives, at the card of the first of them.
+      !> Adds a remark about drives, on the card of the first of these drives.
       subroutine add_drive_remark(kind, names, value)
          integer, intent(in) :: kind         !< remark_rest or remark_turns
-         character(*), intent(in) :: names(:)   !< (1 or more) of the drives
+         character(*), intent(in) :: names(:)   !< (1 or more) the names of the drives
          character(*), intent(in) :: value   !< the end of the sentence
          integer :: card
 
@@ -183,13 +184,13 @@ contains
       end subroutine add_drive_remark
    end subroutine check_drives
 
-   !> Finds the greatest |rate| of a law between two times within a thousandth, if it is above a bound. The time is
-   !> halved, and true bounds exclude parts of it.
+   !> Finds the greatest |rate| of a law between two times, within a thousandth or the limit of `depth`, if it is above
+   !> a bound. The interval is halved again and again, and true bounds exclude parts of the interval.
    pure recursive subroutine find_fastest(law, from, to, depth, least, rate)
-      type(drive_t), intent(in) :: law
+      type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: from, to       !< times, in their order
-      real(wp), intent(in) :: least          !< rates below do not count; length or rad over the unit of time
-      integer, intent(in) :: depth           !< the time is halved at most so often
+      real(wp), intent(in) :: least          !< smaller rates do not count; length or rad per unit of time
+      integer, intent(in) :: depth           !< the interval is halved at most so often
       real(wp), intent(inout) :: rate        !< the greatest |rate| so far, in the unit of `least`
       type(bounds_t) :: b
       real(wp) :: f(3), most
@@ -204,10 +205,10 @@ contains
       call find_fastest(law, middle_of(from, to), to, depth - 1, least, rate)
    end subroutine find_fastest
 
-   !> Builds the echo of a set, the cards as they were understood with the values in use. It has a line for each card
-   !> but TITLE, and a line for each default that no card replaces.
+   !> Builds the echo of a set without errors: a line for each card except TITLE, as it was understood, with the values
+   !> in use, and a line for each default that no card replaces.
    subroutine build_echo(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer :: k, n
 
       allocate (set%mechanism%echo(set%count + 5))
@@ -220,7 +221,7 @@ contains
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0 .and. .not. allocated(m%columns)) &
             call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
-         ! Of the links printed by default, the angles alone may be: of all of them or of some.
+         ! Of links printed by default only the angle may be printed: of all links or of some.
          if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = &
             merge(angles//repeat(' ', len(of_some)), angles//of_some, &
             all(m%requests%angle_alone .or. m%requests%kind /= request_link))
@@ -232,8 +233,8 @@ contains
 
    contains
 
-      !> Adds the line of a card. A blank real is as drawn or has its value 0.0; a blank field of AT or VARY stays
-      !> blank.
+      !> Adds the line of a card to the echo. A blank real shows the value as drawn, or 0.0, or the factor 1.0 of SUM.
+      !> Blank reals of AT, VARY and CYLINDER, and the blank closing tolerance of METHOD, stay blank.
       subroutine add_card(k)
          integer, intent(in) :: k            !< number of the card
          type(parameter_t) :: number
@@ -286,7 +287,7 @@ contains
          end associate
       end subroutine add_card
 
-      !> Puts a text into the field of a real in the last line.
+      !> Puts a text into the field of a real in the last line of the echo.
       subroutine append_real(i, text)
          integer, intent(in) :: i            !< number of the real, 1 to 3
          character(*), intent(in) :: text    !< at most `real_width` characters
@@ -296,7 +297,7 @@ contains
          set%mechanism%echo(n)(column:column + real_width - 1) = text
       end subroutine append_real
 
-      !> Adds the line of the defaults of a form, if no card of the set has this form.
+      !> Adds a line with the defaults of a form to the echo, if no card of the set has this form.
       subroutine add_default(form, labels)
          integer, intent(in) :: form         !< form_units, ...
          character(label_length), intent(in) :: labels(3)   !< the values in use
@@ -306,7 +307,7 @@ contains
          set%mechanism%echo(n)(echo_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
 
-      !> Adds a line with the name and the labels of a card.
+      !> Adds a line with the name and the labels of a card to the echo.
       subroutine add_head(form, labels)
          integer, intent(in) :: form         !< of the card
          character(label_length), intent(in) :: labels(3)   !< of the card
@@ -317,10 +318,10 @@ contains
    end subroutine build_echo
 
    !> Adds remarks on the pairs of a drawing, in a set without errors: on each pair whose numbers or points contradict
-   !> the drawing, and on each guide whose alpha is no direction of the drawing, unless it counts from a bar. Points
-   !> that lengths have moved contradict nothing.
+   !> the drawing, on each guide whose alpha counts from turned axes, unless these are along a bar, and on each cylinder
+   !> that is drawn outside its stroke. The drawing before lengths is compared. Without JOINT cards there is no remark.
    subroutine check_drawing(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(mechanism_t) :: m                        ! as it is drawn
       real(wp) :: length, closure_error, turn
       character(:), allocatable :: text
@@ -360,7 +361,7 @@ contains
 
    contains
 
-      !> Gives an angle as text, with the deck's unit.
+      !> Gives an angle as text in the deck's unit of angles, with this unit.
       function angle_text(value) result(text)
          real(wp), intent(in) :: value       !< rad
          character(:), allocatable :: text
@@ -370,14 +371,14 @@ contains
       end function angle_text
    end subroutine check_drawing
 
-   !> Gives a number as text. Zeros at its end are left out, but for one after the point. A very small or large number
-   !> has an exponent and two digits fewer.
+   !> Gives a number as text with `drawn_text_digits` digits. Zeros at its end are left out, but for one after the
+   !> point. A very small or large number has an exponent and two digits fewer, so that its text is not longer.
    pure function drawn_text(value) result(text)
       real(wp), intent(in) :: value          !< in the deck's unit
       character(:), allocatable :: text
-      !> Numbers below this, but 0, have an exponent.
+      !> Smaller numbers, except 0, have an exponent: in fixed point they would have too many decimals.
       real(wp), parameter :: least_plain = 1.0e-3_wp
-      !> Numbers from this on have an exponent.
+      !> Numbers from this on have an exponent: in fixed point no digit would be left for a decimal.
       real(wp), parameter :: most_plain = 1.0e8_wp
       !> Numbers below this have a digit less, so that they have at most ten decimals.
       real(wp), parameter :: ten_decimals = 1.0e-2_wp

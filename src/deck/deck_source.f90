@@ -1,6 +1,6 @@
-!> The lines of the deck as cards, from a file, standard input or a text, each read once; of a file in bounded memory.
-!> Files, pipes and terminals are read in the same way, by the system's own read: the Fortran run-time library of GNU
-!> takes an error for the end of the file.
+!> The lines of the deck as cards, from a file, standard input or a text, each read once; a file in bounded memory.
+!> Files, pipes and terminals are all read by the system's own read: the Fortran run-time library of GNU takes an error
+!> for the end of the file.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -11,12 +11,12 @@ module deck_source
    private
    public :: source_t, open_source, source_of, next_card
 
-   !> Bytes that are read at once.
+   !> Bytes that one call of the system reads at most: few calls.
    integer, parameter :: read_length = 2**20
-   !> The largest number of columns of a line. A longer line is no card: a source without an end, such as /dev/zero, is
-   !> rejected there.
+   !> The largest number of columns of a line. A longer line is no card: a source without lines, such as /dev/zero, is
+   !> rejected then.
    integer, parameter :: max_columns = 10000000
-   !> The mark that some editors put at the beginning of a file.
+   !> The byte order mark of UTF-8, which some editors write at the beginning of a file.
    character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
    !> The ends of lines.
    character(1), parameter :: line_feed = achar(10), carriage_return = achar(13)
@@ -28,18 +28,18 @@ module deck_source
       integer(c_int) :: descriptor = standard_input
       integer :: lines = 0                   !< lines read so far
       character(:), allocatable :: buffer    !< bytes of the deck
-      character(:), allocatable :: block     !< those read last
+      character(:), allocatable :: block     !< (read_length) the bytes of the last call
       integer :: at = 1                      !< the next byte of the buffer
-      logical :: ended = .false.             !< there is no more to read
+      logical :: ended = .false.             !< all bytes of the deck are in the buffer, or were there
    end type source_t
 
 contains
 
-   !> Opens a deck. Errors: status_system.
+   !> Opens a deck for reading, and reads its beginning.
    subroutine open_source(source, path, failure)
-      type(source_t), intent(out) :: source
+      type(source_t), intent(out) :: source  !< the deck, if there is no failure
       character(*), intent(in) :: path       !< of the file; '' or '-': standard input
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< status_system; not allocated: the deck is open
       integer :: error
 
       source%name = 'STANDARD INPUT'
@@ -60,7 +60,7 @@ contains
       end if
    end subroutine open_source
 
-   !> Makes a source of a text.
+   !> Makes a source of the lines of a text.
    function source_of(text) result(source)
       character(*), intent(in) :: text       !< lines of a deck that end in LF or CR-LF
       type(source_t) :: source
@@ -71,22 +71,22 @@ contains
       call pass_byte_order_mark(source)
    end function source_of
 
-   !> Puts the next byte after the mark that some editors put at the beginning of a file.
+   !> Skips the byte order mark at the beginning of a deck, if there is one.
    subroutine pass_byte_order_mark(source)
-      type(source_t), intent(inout) :: source
+      type(source_t), intent(inout) :: source   !< with the beginning of the deck in its buffer
 
       if (index(source%buffer(:min(len(byte_order_mark), len(source%buffer))), byte_order_mark) == 1) &
          source%at = len(byte_order_mark) + 1
    end subroutine pass_byte_order_mark
 
-   !> Reads the next card, a line that ends in LF or CR-LF. Errors: status_system; status_rejected for a line of more
-   !> than `max_columns`, and for a line with a carriage return inside: a comment in a file whose lines end in CR would
-   !> hide the cards after it.
+   !> Reads the next card of a deck, a line that ends in LF or CR-LF. A failure is status_system; or status_rejected,
+   !> for a line of more than `max_columns` columns or with a carriage return inside. Reason: a comment in a file whose
+   !> lines end in CR would hide the cards after it.
    subroutine next_card(source, card, found, failure)
-      type(source_t), intent(inout) :: source
-      type(card_t), intent(out) :: card
-      logical, intent(out) :: found          !< false at the end of the deck
-      type(failure_t), allocatable, intent(out) :: failure
+      type(source_t), intent(inout) :: source   !< an open deck
+      type(card_t), intent(out) :: card      !< the line, if `found`
+      logical, intent(out) :: found          !< false at the end of the deck and after a failure
+      type(failure_t), allocatable, intent(out) :: failure   !< not allocated: a card, or the end of the deck
       integer :: length, next, i
       logical :: is_whole
 
@@ -131,11 +131,11 @@ contains
       source%at = next
    end subroutine next_card
 
-   !> Reads a block to the end of the buffer, and drops the bytes of the buffer that are used. At its end the file is
-   !> closed. Errors: status_system.
+   !> Appends a block of the deck to the buffer, and drops the bytes of the buffer that have become cards. Closes the
+   !> file at its end.
    subroutine read_on(source, failure)
-      type(source_t), intent(inout) :: source
-      type(failure_t), allocatable, intent(out) :: failure
+      type(source_t), intent(inout) :: source   !< an open deck; `ended` at the end or on an error
+      type(failure_t), allocatable, intent(out) :: failure   !< status_system; not allocated: no error
       integer :: length, error
       logical :: closed
 

@@ -1,7 +1,7 @@
-!> The TOLER and VARY cards of a set: each gives tolerances, or a range or a list of values, to numbers of the card
-!> above it. A variant is the cards of the set with other numbers, built like the cards of any set: therefore the pairs
-!> of a drawing, turns a minute, degrees and all checks need no code of their own. Numbers that do not run together make
-!> a grid; the last runs fastest.
+!> The TOLER and VARY cards of a set. They give tolerances, or a range or a list of values, to numbers of the card above
+!> them. A variant is the cards of the set with other numbers, built like the cards of any set. Therefore numbers as
+!> drawn, revolutions per minute, degrees and all checks need no code of their own. Numbers that are not tied to one
+!> another make a grid; the last number changes fastest.
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
@@ -18,7 +18,7 @@ module deck_variants
    public :: build_tolerances, parameter_on_card, variation_t, varied_t, build_variation, apply_variant, &
       values_of_variant
 
-   !> The largest number of variants of a set.
+   !> The largest number of variants of a set: seven digits fit into LABEL-B and into the tables.
    integer, parameter :: max_variants = 9999999
    !> The word of a VARY card with a list of values.
    character(*), parameter :: list_word = 'LIST'
@@ -35,37 +35,37 @@ module deck_variants
 
    !> A number that varies.
    type :: varied_t
-      integer :: card = 0, place = 0                !< its card in the set, and which of its three reals it is
+      integer :: card = 0, place = 0                !< its card in the set; which real of the card, 1 to 3
       integer :: vary = 0                           !< its first VARY card, in set%cards
-      integer :: axis = 0                           !< the axis of the grid along which it runs
+      integer :: axis = 0                           !< the axis of the grid along which it changes
       integer :: count = 0                          !< number of its values
-      real(wp) :: first = 0.0_wp, last = 0.0_wp     !< of a range, in the deck's units
-      real(wp), allocatable :: list(:)              !< (count) of a list
-      character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
-      character(2*label_length) :: word = ''        !< the word of the card for the number: XI, AMPLITUDE
-      character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
+      real(wp) :: first = 0.0_wp, last = 0.0_wp     !< ends of a range, in the deck's units
+      real(wp), allocatable :: list(:)              !< (count) values of a list, in the deck's units
+      character(4*label_length) :: owner = ''       !< the card, its name or its drive: POINT A, ANGLE CRANK HARMONIC 1
+      character(2*label_length) :: word = ''        !< the card's word for the number: XI, AMPLITUDE
+      character(2*label_length + 5) :: unit = ''        !< the deck's unit of the number, as text
       type(parameter_t) :: number                 !< its address in the mechanism
-      real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`
-      !> Nothing else in the mechanism depends on it, and no value of it is an error: a variant needs no new building.
+      real(wp) :: factor = 1.0_wp                   !< its unit in the units of `mechanism_t`
+      !> Nothing else in the mechanism depends on the number, and no value of it is an error: a variant need not be
+      !> built from the cards.
       logical :: stands_alone = .false.
    end type varied_t
 
    !> The variants of a set.
    type :: variation_t
-      type(card_set_t), allocatable :: set          !< its cards; their numbers are those of the variant built last
-      type(varied_t), allocatable :: numbers(:)
-      integer, allocatable :: counts(:)             !< (axes) of values
-      integer :: total = 0                          !< of variants
+      type(card_set_t), allocatable :: set          !< its cards, with the numbers of the variant built last
+      type(varied_t), allocatable :: numbers(:)     !< (any number) that vary, in the order of the VARY cards
+      integer, allocatable :: counts(:)             !< (axes) number of values along each axis of the grid
+      integer :: total = 0                          !< number of variants; 0: no VARY cards
    end type variation_t
 
 contains
 
-   !> Builds the tolerances of a mechanism from the TOLER cards, in their order; the bodies and drives are there. A
-   !> JOINT card has tolerances of the hole of each of its links, of the hole of one link, or of both holes together. A
-   !> card that stands below no card with numbers, a number that takes no tolerance, and a tolerance below zero are
-   !> errors.
+   !> Builds the tolerances of a mechanism from its TOLER cards, in their order. Bodies and drives must have been built.
+   !> A JOINT card has tolerances of the hole of each of its links, of the hole of one link, or of both holes together.
+   !> Errors are a card below no card with numbers, a number that takes no tolerance, and a tolerance below zero.
    subroutine build_tolerances(set)
-      type(card_set_t), intent(inout) :: set
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       type(tolerance_t) :: list(6*set%number_of(form_toler))
       type(parameter_t) :: number
       integer, allocatable :: holes(:)              ! the points of a JOINT card whose holes have tolerances
@@ -112,12 +112,12 @@ contains
 
    contains
 
-      !> Finds the points of a JOINT card whose holes have the tolerances of a TOLER card, and marks all points of the
-      !> holes of the joint. A name that is no link of the joint is an error.
+      !> Finds the points of a JOINT card whose holes have the tolerances of a TOLER card, and joins all points of the
+      !> holes of the joint (`join_hole`). A name that is no link of the joint is an error.
       subroutine find_holes(k, above, holes)
          integer, intent(in) :: k            !< number of the TOLER card
          integer, intent(in) :: above        !< number of the card above it
-         integer, allocatable, intent(out) :: holes(:)   !< (0 to 2) points; 0: no JOINT, or both holes move together
+         integer, allocatable, intent(out) :: holes(:)   !< (0 to 2) points; none: no JOINT, or both move together
          integer :: i, link
 
          allocate (holes(0))
@@ -138,9 +138,10 @@ contains
          end if
       end subroutine find_holes
 
-      !> Tells whether two lengths give the place of a hole of a TOLER card, or of all points that it moves together.
+      !> Tells whether two lengths give the position of a hole of a TOLER card or, if the card moves its points
+      !> together, the positions of all these points.
       logical function is_placed(above, holes)
-         integer, intent(in) :: above        !< number of the card above it
+         integer, intent(in) :: above        !< number of the card above the TOLER card
          integer, intent(in) :: holes(:)     !< (0 to 2) points, as `find_holes` gives them
          integer, allocatable :: points(:)
          integer :: j
@@ -158,10 +159,10 @@ contains
          end associate
       end function is_placed
 
-      !> Adds the tolerance of a number.
+      !> Adds the tolerance of a number to the list of tolerances.
       subroutine add_tolerance(number, size_of, text)
-         type(parameter_t), intent(in) :: number
-         real(wp), intent(in) :: size_of     !< in the unit of the number on its card
+         type(parameter_t), intent(in) :: number   !< its address
+         real(wp), intent(in) :: size_of     !< the tolerance, in the unit of the number on its card
          character(*), intent(in) :: text    !< the tolerance as it stands on its card
          type(unit_t) :: unit
 
@@ -172,9 +173,9 @@ contains
       end subroutine add_tolerance
    end subroutine build_tolerances
 
-   !> Tells whether a TOLER card is a second one of the card above it: of a JOINT card each link may have its own.
+   !> Tells whether a TOLER card is a second TOLER card for one card. For a JOINT card each link may have a TOLER card.
    pure logical function is_second(set, k, above)
-      type(card_set_t), intent(in) :: set
+      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
       integer, intent(in) :: k            !< number of the TOLER card
       integer, intent(in) :: above        !< number of the card above it
       integer :: i
@@ -189,9 +190,9 @@ contains
       end do
    end function is_second
 
-   !> Finds the address of a real of a card; its kind is 0 if no number of the mechanism is there.
+   !> Finds the address of the number that a real of a card gives; the kind is 0 if no number of a mechanism is there.
    pure function parameter_on_card(set, k, i) result(number)
-      type(card_set_t), intent(in) :: set
+      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card, of any form
       integer, intent(in) :: i               !< number of the real, 1 to 3
       type(parameter_t) :: number
@@ -210,22 +211,24 @@ contains
       end associate
    end function parameter_on_card
 
-   !> Builds the variants of a set from its VARY cards, and counts them in its mechanism, which is there. Without such
-   !> cards nothing is built. Wrong cards are errors. If the set has an error, `variation` is of no use.
+   !> Builds the variants of a set from its VARY cards, and counts them in its mechanism, which must have been built.
+   !> Errors are wrong VARY cards, tied numbers with different counts, and too many variants. If the set has an error,
+   !> `variation` is of no use.
    subroutine build_variation(set, variation)
-      type(card_set_t), intent(inout) :: set
-      type(variation_t), intent(out) :: variation
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(variation_t), intent(out) :: variation   !< the variants; empty without VARY cards
       type(varied_t) :: one
       integer(int64) :: total
       integer :: i, first
 
       if (set%number_of(form_vary) == 0) return
+
       allocate (variation%numbers(0), variation%counts(0))
       do i = 1, set%count
          if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call read_variation()
       end do
 
-      ! Numbers that are tied must have equal counts; the grid must not be too large.
+      ! Tied numbers must have equal counts; the grid must not be too large.
       total = 1
       do i = 1, size(variation%numbers)
          one = variation%numbers(i)
@@ -235,6 +238,7 @@ contains
                whole(set%cards(variation%numbers(first)%vary)%card%number))
             cycle
          end if
+
          variation%counts(one%axis) = one%count
          total = total*one%count
          if (total <= max_variants) cycle
@@ -249,7 +253,8 @@ contains
 
    contains
 
-      !> Takes the VARY card `i`: a number that varies, or more values of the list above it.
+      !> Reads the VARY card `i`: a number that varies, or more values of the list on the VARY card above. A VARY card
+      !> below no card with numbers, an unknown number and a repeated number are errors.
       subroutine read_variation()
          type(unit_t) :: unit
          character(:), allocatable :: name
@@ -272,9 +277,11 @@ contains
             end if
             call read_values(set, i, one)
             if (one%count == 0) return
+
             n = findloc(variation%numbers%card == above .and. variation%numbers%place == one%place, .true., dim=1)
-            ! More values of the list on the VARY card above it.
+            ! More values of the list on the VARY card above.
             continues = card%below == set%cards(i - 1)%below .and. all(card%label == set%cards(i - 1)%label)
+
             if (n == 0) then
                if (set%errors%count == 0) then
                   one%number = parameter_on_card(set, one%card, one%place)
@@ -287,7 +294,8 @@ contains
                   one%factor = unit%factor
                   one%stands_alone = stands_alone(set, form)
                end if
-               ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
+
+               ! The axis of the number: the axis of the first number with this name of a tie, or a new axis.
                do k = 1, size(variation%numbers)
                   if (card%label(label_c) /= '' .and. &
                       set%cards(variation%numbers(k)%vary)%label(label_c) == card%label(label_c)) one%axis = &
@@ -308,11 +316,12 @@ contains
       end subroutine read_variation
    end subroutine build_variation
 
-   !> Gives a number that varies the values on its VARY card. If there is an error, its count stays 0.
+   !> Reads the values of a number from its VARY card: a list, or the ends of a range and a count. If the card is wrong,
+   !> this is an error, and the count of the number stays 0.
    subroutine read_values(set, i, one)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: i               !< number of the card
-      type(varied_t), intent(inout) :: one
+      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      integer, intent(in) :: i               !< number of the VARY card
+      type(varied_t), intent(inout) :: one   !< gets `list`, or `first` and `last`, and `count`
       type(error_code_t) :: error
       integer :: count_given, place
 
@@ -341,15 +350,16 @@ contains
       end associate
    end subroutine read_values
 
-   !> Tells whether nothing else in the mechanism depends on a number of a card. Other parts can depend on it:
+   !> Tells whether nothing else in a mechanism depends on the numbers of cards of a form. Other numbers can depend on
+   !> them:
    !>
-   !> - in a drawing, points of JOINT cards depend on the places of links, and numbers as drawn on points and guides;
-   !> - the place of the block of a slot depends on the point in the slot;
+   !> - in a drawing, points of JOINT cards depend on the positions of links, and numbers as drawn on points and guides;
+   !> - the position of the block of a slot depends on the point in the slot;
    !> - whether a term of a drive is defined depends on the times of TIME;
    !> - if TIME counts turns, the last instant depends on the rate;
    !> - whether a cylinder begins with a length above 0 depends on the law of its drive.
    pure logical function stands_alone(set, form)
-      type(card_set_t), intent(in) :: set
+      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
       integer, intent(in) :: form            !< of the card: form_ground, ...
 
       select case (form)
@@ -364,13 +374,14 @@ contains
       end select
    end function stands_alone
 
-   !> Gives a mechanism the numbers of a variant. If the mechanism is new, or if other parts may depend on these
-   !> numbers, the cards of the variation get them instead: then the mechanism must be built from these cards.
+   !> Writes the numbers of a variant into an earlier variant. If the mechanism is no earlier variant, or other numbers
+   !> may depend on those that vary, writes them to the cards of the variation: the variant must then be built from the
+   !> cards.
    subroutine apply_variant(variation, n, m, is_done)
-      type(variation_t), intent(inout) :: variation
+      type(variation_t), intent(inout) :: variation   !< of the set; its cards may get the numbers
       integer, intent(in) :: n               !< number of the variant, 1 to variation%total
-      type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant
-      logical, intent(out) :: is_done        !< `m` is the variant now
+      type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant; the variant, if `is_done`
+      logical, intent(out) :: is_done        !< `m` is the variant; false: the cards have its numbers
       type(input_errors_t) :: none
       real(wp) :: values(size(variation%numbers))
       integer :: i
@@ -382,7 +393,7 @@ contains
             call set_parameter(m, variation%numbers(i)%number, values(i)*variation%numbers(i)%factor)
          end do
          m%variant = n
-         ! A TIME card of one time is an error.
+         ! A TIME card with one time for both ends is an error, which the building of the cards reports.
          is_done = m%steps < 0 .or. abs(m%t1 - m%t0) > 0.0_wp
       end if
       if (is_done) return
@@ -396,9 +407,10 @@ contains
       call begin_mechanism(variation%set, variation%set%mechanism%set_number)
    end subroutine apply_variant
 
-   !> Gives the values (numbers that vary) of a variant, in the deck's units. The last value of a range is exact.
+   !> Gives the values (numbers that vary) of a variant, in the deck's units. The last value of a range is exactly its
+   !> end.
    pure function values_of_variant(variation, n) result(values)
-      type(variation_t), intent(in) :: variation
+      type(variation_t), intent(in) :: variation   !< of the set
       integer, intent(in) :: n               !< number of the variant, 1 to variation%total
       real(wp) :: values(size(variation%numbers))
       integer :: place(size(variation%counts)), rest, i, k

@@ -1,6 +1,6 @@
-!> All errors of decks, by number and sentence, and the errors found in one deck, each with a picture of its card, a
-!> mark under the column and, where it helps, the layout of the card. A message is `"text" SENTENCE`, or the sentence
-!> alone. Remarks are collected in addition to the errors; they reject nothing.
+!> All errors of decks, by number and sentence, and the errors found in one deck. A message shows the card, a mark under
+!> the column and, if it helps, the layout of the card. It is `"text" SENTENCE`, or only the sentence. Remarks are
+!> collected in addition to errors; they reject nothing.
 module input_errors
    use kinds, only: wp, label_length
    use mechanism, only: remark_t, remark_more
@@ -10,28 +10,29 @@ module input_errors
    private
    public :: error_code_t, input_errors_t, add_error, add_field_error, error_report, add_remark, near_name
 
-   !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
+   !> The largest number of errors of a deck, and of remarks of a set, that are printed: nobody reads more. All others
+   !> are only counted.
    integer, parameter, public :: max_printed = 50
-   !> The ruler below a card, for its columns and one ten more.
+   !> The ruler below a card, for its 80 columns and ten more.
    character(*), parameter :: ruler = &
       '....+....1....+....2....+....3....+....4....+....5....+....6....+....7....+....8....+....9'
-   !> The layout of an error's own card.
+   !> Stands for the layout of the card that has the error.
    integer, parameter :: own_layout = -1
 
    !> A kind of error.
    type :: error_code_t
       integer :: number = 0              !< printed as E and three digits; 0: no error
-      character(160) :: sentence = ''
+      character(160) :: sentence = ''    !< in capitals; begins with a verb if the wrong text is its subject
       integer :: layout = form_unknown   !< the form whose layout is printed below the message, or own_layout
    end type error_code_t
 
    !> The errors of a deck.
    type :: input_errors_t
-      integer :: count = 0               !< with those that are not printed
-      logical :: is_free = .false.       !< a card in free format has its error: further ones are not repeated
+      integer :: count = 0               !< number of errors, also of those that are not printed
+      logical :: is_free = .false.       !< a card in free format has its error: later such cards have none
       character(:), allocatable :: lines !< the messages, joined by new_line('a'); none: not allocated
-      integer :: remarked = 0            !< remarks about the open set, with those for which there is no room
-      type(remark_t) :: remarks(max_printed + 1)   !< the last says how many there is no room for
+      integer :: remarked = 0            !< number of remarks about the open set, also beyond the list
+      type(remark_t) :: remarks(max_printed + 1)   !< the last counts those beyond the list
    end type input_errors_t
 
    ! The deck and its sets.
@@ -53,8 +54,10 @@ module input_errors
       foreign_character = error_code_t(16, 'CONTAINS A CHARACTER THAT IS NOT PRINTABLE ASCII'), &
       border_crossed = error_code_t(18, 'CROSSES THE FIELD BORDER BETWEEN COLUMNS', own_layout), &
       field_unused = error_code_t(19, 'IS IN A FIELD THAT THIS CARD DOES NOT USE', own_layout)
-   ! Numbers. The range of 1E-max_power to 1Emax_power leaves room for fourth powers in the real kind.
+   !> Numbers on cards are 0 or of size 1E-max_power to 1Emax_power: this leaves room for fourth powers in the kind of
+   !> reals.
    integer, parameter, public :: max_power = min(60, int(0.25*range(1.0_wp)))
+   !> The number `max_power` as text: 60, or 9 in single precision.
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
    type(error_code_t), parameter, public :: &
       number_other = error_code_t(20, 'IS NOT A NUMBER'), &
@@ -64,7 +67,7 @@ module input_errors
       number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'IS NOT A REAL NUMBER: WRITE A DECIMAL POINT OR AN EXPONENT (5.0)'), &
       number_fraction = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT')
-   ! Fields, and the cards that belong to the one above them: `*`, TOLER, VARY, ADD and RISE.
+   ! Fields, and cards that belong to the card above them: `*`, TOLER, VARY, ADD and RISE.
    type(error_code_t), parameter, public :: &
       field_blank = error_code_t(34, 'THE FIELD IS BLANK: FILL IT IN', own_layout), &
       label_blank_inside = error_code_t(35, 'IS NOT A LABEL: LABELS CANNOT CONTAIN BLANKS', own_layout), &
@@ -148,16 +151,16 @@ module input_errors
 
 contains
 
-   !> Adds an error. Above its sentence stand the card, a ruler in tens up to the end of the card or to the mark, and
-   !> the mark under the column.
+   !> Adds an error to the errors of a deck. Above its sentence stand the card, a ruler in tens up to the end of the
+   !> card or to the mark, and the mark under the column.
    subroutine add_error(errors, code, card, field, column, text, more)
-      type(input_errors_t), intent(inout) :: errors
-      type(error_code_t), intent(in) :: code
-      type(card_t), intent(in) :: card       !< its number is 0 if the error is about the deck as a whole
-      type(field_t), intent(in) :: field     !< in which the text begins
-      integer, intent(in) :: column          !< at which the text begins
+      type(input_errors_t), intent(inout) :: errors   !< gets the error
+      type(error_code_t), intent(in) :: code !< its number and sentence
+      type(card_t), intent(in) :: card       !< the wrong card; its number is 0: the whole deck is wrong
+      type(field_t), intent(in) :: field     !< the field in which the text begins
+      integer, intent(in) :: column          !< of the card at which the text begins
       character(*), intent(in) :: text       !< the wrong text; '': none
-      character(*), intent(in), optional :: more   !< the end of the sentence
+      character(*), intent(in), optional :: more   !< the end of the sentence, if it has one
       character(1), parameter :: next = new_line('a')
       character(:), allocatable :: lines, head, shown, margin, place
       character(3) :: number
@@ -184,7 +187,7 @@ contains
 
          place = 'CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '//trim(field%name)//': '
          if (text /= '') place = place//'"'//printable(trim(text))//'" '
-         ! A sentence without a subject would be read twice.
+         ! Without a text the sentence would have no subject.
          if (text == '' .and. index(code%sentence, 'IS ') == 1) place = place//'A BLANK FIELD '
          if (form == own_layout) form = find_form(card%text(:label_length))
       end if
@@ -196,14 +199,14 @@ contains
       call move_alloc(lines, errors%lines)
    end subroutine add_error
 
-   !> Adds an error about the whole text in a field of a card.
+   !> Adds an error about the whole text in a field of a card to the errors of a deck.
    subroutine add_field_error(errors, code, card, field, more, place)
-      type(input_errors_t), intent(inout) :: errors
-      type(error_code_t), intent(in) :: code
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
-      character(*), intent(in), optional :: more   !< the end of the sentence
-      integer, intent(in), optional :: place   !< number of the character of the text under which the mark is; else 1
+      type(input_errors_t), intent(inout) :: errors   !< gets the error
+      type(error_code_t), intent(in) :: code !< its number and sentence
+      type(card_t), intent(in) :: card       !< the wrong card
+      type(field_t), intent(in) :: field     !< a field of the card
+      character(*), intent(in), optional :: more   !< the end of the sentence, if it has one
+      integer, intent(in), optional :: place   !< character of the text under which the mark stands; else 1
       integer :: column
 
       column = first_column(card, field)
@@ -211,14 +214,14 @@ contains
       call add_error(errors, code, card, field, column, field_text(card, field), more)
    end subroutine add_field_error
 
-   !> Adds a remark.
+   !> Adds a remark about a card of the open set. Beyond `max_printed` remarks are only counted.
    subroutine add_remark(errors, kind, card, column, text, value)
-      type(input_errors_t), intent(inout) :: errors
+      type(input_errors_t), intent(inout) :: errors   !< gets the remark
       integer, intent(in) :: kind            !< remark_title_long, ...
       integer, intent(in) :: column          !< of the card at which the text begins
-      type(card_t), intent(in) :: card
+      type(card_t), intent(in) :: card       !< that the remark is about
       character(*), intent(in) :: text       !< of the card, or names of drives; '': none
-      character(*), intent(in), optional :: value   !< the end of the sentence
+      character(*), intent(in), optional :: value   !< the end of the sentence, if it has one
       integer :: n
 
       errors%remarked = errors%remarked + 1
@@ -228,7 +231,7 @@ contains
       if (n > max_printed) errors%remarks(n) = remark_t(remark_more, text=whole(errors%remarked - max_printed))
    end subroutine add_remark
 
-   !> Gives the end of the error of a name that does not exist: the nearest name.
+   !> Gives the text that ends the error of an unknown name: the nearest name.
    pure function near_name(name) result(text)
       character(*), intent(in) :: name       !< the nearest name
       character(:), allocatable :: text
@@ -236,9 +239,9 @@ contains
       text = '(NEAREST NAME: '//trim(name)//')'
    end function near_name
 
-   !> Gives all messages, lines joined by new_line('a'); '' if there is no error.
+   !> Gives all error messages of a deck, lines joined by new_line('a'); '' if there is no error.
    pure function error_report(errors) result(report)
-      type(input_errors_t), intent(in) :: errors
+      type(input_errors_t), intent(in) :: errors   !< of a deck
       character(:), allocatable :: report
 
       report = ''
@@ -247,9 +250,10 @@ contains
          report = report//new_line('a')//' *** AND '//whole(errors%count - max_printed)//' MORE'
    end function error_report
 
-   !> Puts ? for each byte of a text that is not printable ASCII, so that every column stays one character wide.
+   !> Gives a text with ? in place of each byte that is not printable ASCII, so that every column stays one character
+   !> wide.
    pure function printable(text) result(shown)
-      character(*), intent(in) :: text       !< of a card
+      character(*), intent(in) :: text       !< any bytes of a card
       character(len(text)) :: shown
       integer :: i
 

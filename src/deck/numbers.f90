@@ -1,11 +1,11 @@
-!> The strict grammar of numbers. A READ statement by itself accepts `1 2` as 12, a lone `-` as 0, `NaN`, and 1e400 as
-!> infinity. Here a text is scanned first, and every error has its code and its place.
+!> The strict grammar of numbers. A READ statement accepts `1 2` as 12, a single `-` as 0, `NaN`, and 1e400 as infinity.
+!> Here a text is scanned first, and every error has its code and the position of its character.
 !>
 !>     real  = [sign] digits-and-one-point [E|D [sign] digits]     with a point or an exponent, or both
 !>     whole = [sign] digits
 !>
 !> As in Fortran, a number with the exponent D is of double precision in every kind of reals: 0.1D0 is the double
-!> nearest to 0.1, so that programs in real64 and real128 read the same number.
+!> nearest to 0.1, so that programs in real64 and real128 read equal numbers.
 module numbers
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp, exact_power
@@ -14,17 +14,17 @@ module numbers
    private
    public :: read_real, read_whole
 
-   !> Larger exponents are set to this one: far beyond the range, whatever the digits are.
+   !> Larger exponents become this exponent: far beyond the range of reals with 80 digits before the point.
    integer, parameter :: exponent_cap = 100000
 
 contains
 
-   !> Reads a real number.
+   !> Reads a real number from a text.
    pure subroutine read_real(text, value, error, place)
       character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
       real(wp), intent(out) :: value         !< 0 if there is an error
       type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
-      integer, intent(out) :: place          !< of the first wrong character; without a point or out of range 1
+      integer, intent(out) :: place          !< number of the first wrong character; in all other cases 1
       integer :: first, n, power, point, letter, exponent
       real(wp) :: whole
       real(dp) :: double
@@ -68,19 +68,20 @@ contains
          place = 1
          return
       end if
+
       if (place <= len(text)) error = number_other
       place = min(place, len(text))
       if (error%number > 0) return
 
       place = 1
       if (n == 0) return
-      ! Beyond them a conversion may trap.
+      ! Beyond the range of reals a conversion may trap.
       if (n - 1 + power > range(value)) error = number_overflow
       if (n - 1 + power < -range(value)) error = number_underflow
       if (error%number > 0) return
       is_double = scan(text(letter:), 'Dd') == 1 .and. abs(n + power) < range(double)
       if (n <= precision(whole) .and. abs(power) <= exact_power .and. .not. is_double) then
-         ! Both are exact, and there is one rounding: this takes a tenth of the time of a READ statement.
+         ! The digits and the power are exact, and there is one rounding: a tenth of the time of a READ statement.
          if (power < 0) value = whole/10.0_wp**(-power)
          if (power >= 0) value = whole*10.0_wp**power
          if (text(1:1) == '-') value = -value
@@ -92,12 +93,12 @@ contains
       end if
    end subroutine read_real
 
-   !> Reads a whole number.
+   !> Reads a whole number from a text.
    pure subroutine read_whole(text, value, error, place)
       character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
       integer, intent(out) :: value          !< 0 if there is an error
       type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
-      integer, intent(out) :: place          !< of the first wrong character; out of range 1
+      integer, intent(out) :: place          !< number of the first wrong character; in all other cases 1
       integer :: first, wrong, status
 
       value = 0

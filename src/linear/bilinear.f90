@@ -16,7 +16,7 @@ module bilinear
       complex(dp), allocatable :: plane(:)            !< (0:p)
    end type bilinear_t
 
-   !> A system of the same form with its solutions, in the chart x_0 = 1 + sum(chart_k x_k).
+   !> A bilinear system with its solutions, in the chart x_0 = 1 + sum(chart_k x_k), y_0 = 1 + sum(chart_k y_k).
    type :: path_start_t
       integer :: p = 0                                !< unknowns of each group
       complex(dp), allocatable :: chart(:, :)         !< (p, 2) the numbers chart_k, of x and of y

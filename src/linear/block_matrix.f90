@@ -181,6 +181,7 @@ contains
          norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
          return
       end if
+
       asks = 0
       norm = 0.0_wp
       state = 0
@@ -188,7 +189,8 @@ contains
          associate (x => work(2*shape%n + 1:3*shape%n))
             call lacn2(shape%n, work(shape%n + 1:2*shape%n), x, iwork, norm, asks, state)
             if (asks == 0) exit
-            ! DLACN2 estimates the largest column sum: that of the transposed inverse.
+
+            ! DLACN2 estimates the largest column sum. Row sums of the inverse are column sums of its transpose.
             associate (side => merge('T', 'N', asks == 1))
                if (shape%rows > shape%n) then
                   call trtrs('U', side, 'N', shape%n, 1, a, shape%rows, x, shape%n, info)

@@ -56,7 +56,7 @@ module klu
       type(common_t) :: common
       type(symbolic_t) :: symbolic
       type(c_ptr) :: numeric = c_null_ptr
-      !> (n + 2) The columns in the order of their elimination, then the ends of the one block, 0 and n.
+      !> (n + 2) The columns in the order of their elimination, then the ends of its only block, 0 and n.
       integer(c_int), allocatable :: order(:)
    end type sparse_factors_t
 
@@ -149,7 +149,7 @@ contains
    subroutine factor(pattern, a, factors, info)
       type(pattern_t), intent(in) :: pattern !< of the matrix, ordered
       real(wp), intent(in), target :: a(*)   !< (entries of the pattern) the matrix, column by column
-      type(sparse_factors_t), intent(inout), target :: factors   !< become those of the matrix; earlier ones are freed
+      type(sparse_factors_t), intent(inout), target :: factors   !< become factors of the matrix; earlier ones are freed
       integer, intent(out) :: info           !< 0; above 0: exactly singular, no factors
       integer(c_int) :: n
 

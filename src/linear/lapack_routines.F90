@@ -1,5 +1,5 @@
-!> The routines of LAPACK that are used; LETTER is s or d, the letter of the kind of reals. Their arguments are those of
-!> LAPACK's documentation. LAPACK has no routines for real128: `lapack` then takes KINMAT's own.
+!> The routines of LAPACK that are used; LETTER is s or d, the letter of the kind of reals. LAPACK's documentation
+!> explains their arguments. LAPACK has no routines for real128: `lapack` then takes KINMAT's own.
 #define SAME(text) text
 #define NAMED(name) SAME(LETTER)SAME(name)
 module lapack_routines

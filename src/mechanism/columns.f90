@@ -99,7 +99,7 @@ module columns
       row_column_t('AX', 'AX', 'ax', 7, [1, 2], of_length, 2, 2), &
       row_column_t('AY', 'AY', 'ay', 8, [2, 2], of_length, 2, 2), &
       row_column_t('APHI', 'AFI', 'aphi', 9, [3, 2], of_angle, 2, 2), &
-      ! 10: links of which the listing has only the angle.
+      ! 10: links with only their angle in the listing.
       row_column_t('PHI', 'FI', 'phi', 3, [3, 0], of_angle, 0, 0), &
       row_column_t('VPHI', 'VFI', 'vphi', 6, [3, 1], of_angle, 1, 1), &
       row_column_t('APHI', 'AFI', 'aphi', 9, [3, 2], of_angle, 2, 2), &
@@ -110,8 +110,8 @@ module columns
       row_column_t('VY', 'VY', 'vy', 5, [2, 1], of_length, 1, 1), &
       row_column_t('AX', 'AX', 'ax', 7, [1, 2], of_length, 2, 2), &
       row_column_t('AY', 'AY', 'ay', 8, [2, 2], of_length, 2, 2), &
-      ! 19: slides of prismatic pairs; 22: angles of revolute pairs. Their words are not those of links, since a pair
-      ! may have the name of a link.
+      ! 19: slides of prismatic pairs; 22: angles of revolute pairs. Their words differ from the words of links,
+      ! since a pair may have the name of a link.
       row_column_t('SLIDE', 'PRZESUW', 's', 1, [1, 0], of_length, 0, 0), &
       row_column_t('VELOCITY', 'PREDKOSC', 'v', 2, [1, 1], of_length, 1, 1), &
       row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'a', 4, [1, 2], of_length, 2, 2), &
@@ -155,7 +155,7 @@ module columns
    !> The numbers of rows with one coordinate on COLUMN cards.
    character(8), parameter :: of_value(0:2) = ['VALUE   ', 'VVALUE  ', 'AVALUE  ']
 
-   !> The forms of rows; those of ratios are row_ratio to last_form, one for each dimension of a ratio.
+   !> The forms of rows. Ratios have the forms row_ratio to last_form, one for each dimension of a ratio.
    integer, parameter :: row_link = 1, row_turning = 2, row_point = 3, row_slide = 4, row_angle = 5, row_pole = 6, &
       row_curve = 7, row_length = 8, row_direction = 9, row_ratio = 10, last_form = 13
    !> The kind and the columns of each form.
@@ -265,7 +265,7 @@ contains
    !> the only rule of which numbers exist.
    pure integer function cell_of(column, known, state) result(cell)
       type(row_column_t), intent(in) :: column   !< one of `columns_of_rows`
-      integer, intent(in) :: known           !< what exists: -1 nothing, 0 position, 1 velocity too, 2 acceleration too
+      integer, intent(in) :: known           !< -1: nothing exists, 0: position, 1: velocity too, 2: acceleration too
       integer, intent(in) :: state           !< of the row: centre_finite, ...
 
       cell = cell_number

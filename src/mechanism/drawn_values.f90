@@ -16,7 +16,7 @@ module drawn_values
 
 contains
 
-   !> Computes those of the numbers alpha (rad), h (length) and beta (rad) of a prismatic pair that are as drawn.
+   !> Computes the numbers of a prismatic pair that are as drawn: alpha (rad), h (length) and beta (rad).
    !>
    !> - If alpha is as drawn, the guide runs from P to Q: alpha is the direction of PQ, in (-pi, pi], less the angle of
    !>   link i, and h is 0.

@@ -450,7 +450,7 @@ contains
    end function rise_shape
 
    !> Computes value, rate and acceleration (3) of a rise at a time, in the drive's unit and the deck's unit of time. At
-   !> a joint the acceleration is the one after the joint.
+   !> a joint the acceleration has its value after the joint.
    pure function rise_motion(term, t) result(f)
       type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: t              !< time

@@ -182,7 +182,7 @@ contains
       end if
    end subroutine take_lengths
 
-   !> Lists each measure, the measures of which it is made, and all their subjects, each with the part of the links of
+   !> Lists each measure, the measures within this measure, and all their subjects, each with the part of the links of
    !> the measure. Subjects on the ground are listed for several parts.
    subroutine find_measured(m, link_part, measured, measuring)
       type(mechanism_t), intent(in) :: m
@@ -209,7 +209,8 @@ contains
       end do
    end subroutine find_measured
 
-   !> Finds the part to which a pair, drive, row or measure belongs, from its links. Ground alone belongs to part 1.
+   !> Finds the part to which a pair, drive, row or measure belongs, from its links. With only ground links the part is
+   !> 1.
    pure integer function part_of(link_part, links)
       integer, intent(in) :: link_part(:) !< (links of the set) the part of each; 0: ground
       integer, intent(in) :: links(:)     !< (any number) numbers of the links

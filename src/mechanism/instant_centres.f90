@@ -122,8 +122,7 @@ contains
       c%value(1, 2) = length*speed**3/abs(c%weight)
    end function curve_of
 
-   !> Gives the direction of a vector (rad), from -pi (excluded) to pi, but for `end_of_range`; 0 for a vector of length
-   !> 0.
+   !> Gives the direction of a vector (rad), from -pi (excluded) to pi, but for `end_of_range`; 0 for a zero vector.
    pure real(wp) function arrow_angle(vector)
       real(wp), intent(in) :: vector(2)      !< in any unit
 
@@ -133,7 +132,7 @@ contains
    end function arrow_angle
 
    !> Gives the direction of the line along a vector (rad), from -pi/2 (excluded) to pi/2, but for `end_of_range`; 0 for
-   !> a vector of length 0.
+   !> a zero vector.
    pure real(wp) function line_angle(vector)
       real(wp), intent(in) :: vector(2)      !< in any unit
 

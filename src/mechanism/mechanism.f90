@@ -162,7 +162,7 @@ module mechanism
       real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< of a cylinder: its least and greatest length
    end type pair_t
 
-   !> A link, point, pair or measure of which a measure is made.
+   !> A subject of a measure: a link, point, pair or measure.
    type :: subject_t
       integer :: kind = 0                    !< request_link, request_point, request_pair or request_measure
       integer :: number = 0                  !< of the link, point, pair or measure
@@ -176,7 +176,7 @@ module mechanism
       type(subject_t), allocatable :: subjects(:)   !< (2) or, of a sum, any number, none of them a sum
       real(wp) :: constant = 0.0_wp          !< of a sum, length or rad
       logical :: is_angle = .false.          !< an angle, otherwise a length
-      logical :: continues = .false.         !< of all values of the angle, the one nearest to the last instant's
+      logical :: continues = .false.         !< without jumps of whole turns: the value nearest to the last instant's
       real(wp) :: length = 1.0_wp            !< characteristic length of its independent mechanism
    end type measure_t
 
@@ -287,7 +287,7 @@ module mechanism
 
 contains
 
-   !> Counts the instants of a set: those of TIME, then those of AT.
+   !> Counts the instants of a set: the instants of TIME and of AT.
    pure integer function instant_count(settings)
       class(settings_t), intent(in) :: settings   !< of a set or of a part of it
 
@@ -452,7 +452,7 @@ contains
       if (allocated(m%measures)) measure_count = size(m%measures)
    end function measure_count
 
-   !> Finds a measure and the measures of which this measure is made, with theirs.
+   !> Lists a measure and all measures among its subjects, recursively.
    pure recursive function measures_within(m, i) result(list)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< number of the measure

@@ -87,14 +87,14 @@ module motion
       integer :: flag = flag_none                        !< why the instant is flagged
       integer :: singularity = singular_unclear          !< of flag_singular: one of singular_...
       type(diagnostic_t) :: singular_links               !< of flag_singular: the links, if they are known
-      integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
+      integer :: known = -1  !< -1: nothing exists, 0: positions, 1: velocities too, 2: accelerations too
       type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated
       logical :: rests = .false.   !< the position is singular, and all drives rest: nothing moves, to any rounding
       real(wp) :: origin(2) = 0.0_wp                     !< x, y from which `position` is counted (length)
       !> (3, links): x, y, phi, and their first and second derivatives with respect to time.
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)
       !> (links) `known` and `flag` of each link, if links differ: `known` and `flag` of the motion are then the worst
-      !> of all. Not allocated: each link has those of the motion.
+      !> of all. Not allocated: no link differs from the motion.
       integer, allocatable :: link_known(:), link_flag(:)
       !> (measures) The values from which measures that continue go on; not allocated: no measure continues, or there
       !> was no instant yet.
@@ -105,7 +105,7 @@ module motion
 
 contains
 
-   !> Makes a motion of which nothing is known, with all links at rest at the origin.
+   !> Makes a motion with nothing known, and all links at rest at the origin.
    pure function new_motion(n) result(m)
       integer, intent(in) :: n               !< number of links
       type(motion_t) :: m

@@ -190,7 +190,7 @@ contains
       row%value(column_of_ratio, 1:) = [row%value(1, 0), row%value(1, 1)*(f(2)/in_drive)]
    end subroutine find_ratio
 
-   !> Finds how much of a row is known: as much as is known of that one of its links of which least is known.
+   !> Finds how much of a row is known: as much as of its least known link.
    pure subroutine find_known(m, q, links, known, flag)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -382,8 +382,7 @@ contains
 
    !> Finds the factor by which relative roundings of the motion grow in a measure, in units of the characteristic
    !> length and rate. With v = |d'|/s and a = |d''|/s in characteristic rates, and d from point P to point Q, the
-   !> factor is 1 + v + v**2 + a for s = |d|, and 1/s times as much for the direction. If points coincide, the factor is
-   !> 0.
+   !> factor is 1 + v + v**2 + a for s = |d|, and 1/s times as much for the direction; 0 if points coincide.
    pure recursive real(wp) function amplification_in_measure(m, q, i, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
