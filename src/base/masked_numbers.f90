@@ -67,7 +67,7 @@ contains
       character(20) :: digits
       character(80) :: line
       character(5) :: shown
-      integer :: room, d, unknown, first, known, i
+      integer :: room, d, unknown, first, known_digits, i
 
       room = numeral_length - 2 - merge(1, 0, negative)
       do d = min(decimals, max_decimals), max(0, 1 - last), -1
@@ -89,10 +89,10 @@ contains
 
       ! With an exponent, in the form that a number with known digits has; here n > 0.
       call write_whole(n, digits, first)
-      known = len(digits) - first + 1
-      call write_exponent(last + known - 1, shown)
-      digits = digits(first:known + first - 1)//repeat(unknown_digit, len(digits) - known)
-      do d = numeral_length - 8, known, -1
+      known_digits = len(digits) - first + 1
+      call write_exponent(last + known_digits - 1, shown)
+      digits = digits(first:known_digits + first - 1)//repeat(unknown_digit, len(digits) - known_digits)
+      do d = numeral_length - 8, known_digits, -1
          line = merge('-', ' ', negative)//digits(1:1)//'.'//digits(2:d + 1)//'E'//shown
          line = adjustl(line)
          if (len_trim(line) < numeral_length) text = adjustr(line(:numeral_length))

@@ -30,10 +30,10 @@ module number_format
    logical, parameter :: able = digits(1.0_wp) == 53 .and. digits(1.0_long) >= 106
 
    !> The largest exponent of a power of ten in these tables: no power overflows, and no low part is denormal.
-   integer, parameter :: max_power = merge(250, 15, range(1.0_wp) > 300)
-   real(long), parameter :: powers(-max_power:max_power) = [(10.0_long**k, k = -max_power, max_power)]
-   real(wp), parameter :: high(-max_power:max_power) = real(powers, wp)
-   real(wp), parameter :: low(-max_power:max_power) = real(powers - real(high, long), wp)
+   integer, parameter :: largest_power = merge(250, 15, range(1.0_wp) > 300)
+   real(long), parameter :: powers(-largest_power:largest_power) = [(10.0_long**k, k = -largest_power, largest_power)]
+   real(wp), parameter :: high(-largest_power:largest_power) = real(powers, wp)
+   real(wp), parameter :: low(-largest_power:largest_power) = real(powers - real(high, long), wp)
    !> The last power without a low part: 5**22 < 2**53.
    integer, parameter :: last_exact = 22
    !> 16 times the relative error of p + e.
@@ -43,12 +43,12 @@ module number_format
    !> The relative error of p and half as much again: p has two roundings of 2**-53, of `high` and of the product.
    real(wp), parameter :: plain_margin = 3.0_wp*2.0_wp**(-53)
    !> From here on neighbouring reals p differ by 1/2 or more, and e may be larger than 1/2.
-   real(wp), parameter :: coarse = 2.0_wp**51
+   real(wp), parameter :: half_spacing = 2.0_wp**51
 
    !> Veltkamp's factor for 53 bits, and the halves of `high`.
    real(wp), parameter :: splitter = 2.0_wp**27 + 1.0_wp
-   real(wp), parameter :: high_head(-max_power:max_power) = splitter*high - (splitter*high - high)
-   real(wp), parameter :: high_tail(-max_power:max_power) = high - high_head
+   real(wp), parameter :: high_head(-largest_power:largest_power) = splitter*high - (splitter*high - high)
+   real(wp), parameter :: high_tail(-largest_power:largest_power) = high - high_head
 
    !> Characters of a number in the tables, with one blank before it.
    integer, parameter :: numeral_length = 12
@@ -114,11 +114,11 @@ contains
       integer, intent(in) :: decimals        !< decimals of the number
       integer, intent(in) :: first           !< the character at which the number begins
       character(numeral_length), intent(inout) :: text   !< the number without its sign, right-adjusted
-      integer :: place
+      integer :: column
 
-      place = first - 1
-      if (decimals == max_decimals) place = first
-      text(place:place) = '-'
+      column = first - 1
+      if (decimals == max_decimals) column = first
+      text(column:column) = '-'
    end subroutine write_minus
 
    !> Gives value 10**-power as text with an exponent and as many digits as there is room for, right-adjusted. Infinity
@@ -326,7 +326,7 @@ contains
 
       n = 0
       sure = .false.
-      if (.not. able .or. abs(k) > max_power) return
+      if (.not. able .or. abs(k) > largest_power) return
       ! Written so that NaN returns too.
       if (.not. value < 2.0e17_wp*high(-k)) return
       p = value*high(k)
@@ -346,7 +346,7 @@ contains
       n = int(p, int64)
       if (p - real(n, wp) > 0.5_wp) n = n + 1
       rest = p - real(n, wp)
-      if (p >= coarse) then
+      if (p >= half_spacing) then
          carry = int(e)
          n = n + carry
          e = e - real(carry, wp)
@@ -384,7 +384,7 @@ contains
       power = 0
       sure = .false.
       if (.not. able) return
-      if (.not. (value > high(significant - max_power) .and. value < high(max_power - 1))) return
+      if (.not. (value > high(significant - largest_power) .and. value < high(largest_power - 1))) return
       ! The exponent of the power of two below value times log10(2), rounded down, is power or power - 1. For 2**-2000
       ! to 2**2000 the ratio 315653/2**20 gives the same whole numbers as log10(2).
       power = shifta(315653*(exponent(value) - 1), 20)

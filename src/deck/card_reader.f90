@@ -231,10 +231,10 @@ contains
    !> - a number fills its field, and the second number does not: cut, an error with both readings;
    !> - text does not fill its field, and a number with a sign follows: not cut, a remark;
    !> - any other text that does not fill its field: cut.
-   subroutine find_cuts(card, fields, taken, cut, errors)
+   subroutine find_cuts(card, fields, letters, cut, errors)
       type(card_t), intent(in) :: card       !< with the fields
       type(field_t), intent(in) :: fields(:) !< in the order of their columns, without gaps
-      character(*), intent(in) :: taken      !< a character for each field; -: no label, perhaps a number
+      character(*), intent(in) :: letters    !< a character for each field; -: no label, perhaps a number
       logical, intent(out) :: cut(:)         !< (fields) the text of the field is cut
       type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       integer :: i, start, finish, border
@@ -247,7 +247,7 @@ contains
          if (cut(i) .or. card%text(border:border) <= ' ' .or. card%text(border + 1:border + 1) <= ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
-         numeric = taken(i:i) == '-'
+         numeric = letters(i:i) == '-'
          fills = start <= fields(i)%first + merge(1, 0, numeric)
          if (fills .and. .not. numeric) cycle
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
@@ -306,9 +306,9 @@ contains
       character(*), intent(in) :: text       !< without blanks around it, not empty
       type(error_code_t) :: error
       real(wp) :: value
-      integer :: place
+      integer :: wrong
 
-      call read_real(text, value, error, place)
+      call read_real(text, value, error, wrong)
       is_real = error%number == 0
    end function is_real
 
@@ -318,25 +318,25 @@ contains
       logical, intent(in) :: cut(label_a:label_c)   !< the label field has an error already
       type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: error
-      character(1) :: taken
-      integer :: i, last, place
+      character(1) :: letter
+      integer :: i, last, wrong
       logical :: is_long
 
       do i = label_a, label_c
          if (cut(i)) parsed%label(i) = ''
          if (cut(i)) cycle
-         taken = card_forms(parsed%form)%labels(i - card_name:i - card_name)
+         letter = card_forms(parsed%form)%labels(i - card_name:i - card_name)
 
          associate (label => parsed%label(i), field => card_fields(i))
             last = len_trim(label)
             if (last == 0) then
-               if (taken == 'L' .or. taken == 'W') call add_field_error(errors, field_blank, parsed%card, field)
-            else if (taken == '-') then
+               if (letter == 'L' .or. letter == 'W') call add_field_error(errors, field_blank, parsed%card, field)
+            else if (letter == '-') then
                call refuse_field(parsed, i, errors)
-            else if (taken == 'W' .or. taken == 'w') then
+            else if (letter == 'W' .or. letter == 'w') then
                parsed%whole_given = .true.
-               call read_whole(label(:last), parsed%whole, error, place)
-               if (error%number > 0) call refuse_number(parsed, parsed%card, i, field, error, place, errors)
+               call read_whole(label(:last), parsed%whole, error, wrong)
+               if (error%number > 0) call refuse_number(parsed, parsed%card, i, field, error, wrong, errors)
 
             else if (index(label(:last), ' ') > 0) then
                parsed%names_certain = .false.
@@ -365,11 +365,11 @@ contains
 
    !> Adds the error of a wrong number in a field: the text belongs to a label that is too long, the number has a comma,
    !> or any other error of the number.
-   subroutine refuse_number(parsed, card, i, field, error, place, errors)
+   subroutine refuse_number(parsed, card, i, field, error, wrong, errors)
       type(parsed_card_t), intent(inout) :: parsed   !< the card; a long label makes its names uncertain
       type(card_t), intent(in) :: card       !< on which the number stands: its own card or the `*` card below it
       integer, intent(in) :: i               !< the field of `parsed`: label_a, ..., real_3
-      integer, intent(in) :: place           !< number of the first wrong character of the number, from 1
+      integer, intent(in) :: wrong           !< number of the first wrong character of the number, from 1
       type(field_t), intent(in) :: field     !< the field of `card` in which the number stands
       type(error_code_t), intent(in) :: error   !< of the number itself: number_...
       type(input_errors_t), intent(inout) :: errors   !< of the deck so far
@@ -388,7 +388,7 @@ contains
       if (comma > 0) then
          if (is_real(text(:comma - 1)//'.'//text(comma + 1:))) code = merge(number_comma, number_fraction, i >= real_1)
       end if
-      call add_field_error(errors, code, card, field, place=place)
+      call add_field_error(errors, code, card, field, place=wrong)
    end subroutine refuse_number
 
    !> Adds the error of a label that is longer than its field, if text in a given field shows such a label before it:
@@ -443,7 +443,7 @@ contains
       integer, intent(in) :: i               !< number of the real, 1 to 3
       type(input_errors_t), intent(inout) :: errors   !< of the deck so far
       type(error_code_t) :: error
-      integer :: last, place
+      integer :: last, wrong
 
       last = len_trim(card%text(:field%last))
       if (last < field%first) return
@@ -456,9 +456,9 @@ contains
          end if
          return
       end if
-      call read_real(card%text(first_column(card, field):last), parsed%real(i), error, place)
+      call read_real(card%text(first_column(card, field):last), parsed%real(i), error, wrong)
       if (abs(parsed%real(i)) > max_real) error = number_overflow
       if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
-      if (error%number > 0) call refuse_number(parsed, card, label_c + i, field, error, place, errors)
+      if (error%number > 0) call refuse_number(parsed, card, label_c + i, field, error, wrong, errors)
    end subroutine read_real_field
 end module card_reader

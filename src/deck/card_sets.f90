@@ -235,8 +235,8 @@ contains
       is_first = set%cards(k)%subject == 0
       if (is_first) set%cards(k)%subject = n
       call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
-      associate (m => set%mechanism, place => set%cards(k)%real(1:2))
-         m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, place=place, drawn=.true.)
+      associate (m => set%mechanism, position => set%cards(k)%real(1:2))
+         m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, place=position, drawn=.true.)
          link = m%points(set%cards(k)%subject)%link
          is_ground = .false.
          if (link > 0) is_ground = m%links(link)%ground

@@ -148,14 +148,14 @@ contains
    end function layout_of
 
    !> Counts the real fields that a card takes, from REAL-1 on.
-   pure integer function reals_of(form, word) result(taken)
+   pure integer function reals_of(form, word) result(reals)
       integer, intent(in) :: form            !< of the card: form_title, ...; form_unknown: it takes none
       character(label_length), intent(in) :: word   !< its label A
 
-      taken = 0
-      if (form /= form_unknown) taken = card_forms(form)%reals
+      reals = 0
+      if (form /= form_unknown) reals = card_forms(form)%reals
       if (form /= form_add) return
-      if (any(word == ['POWER', 'TABLE'])) taken = 2
+      if (any(word == ['POWER', 'TABLE'])) reals = 2
    end function reals_of
 
    !> Gives the name that the cards of a form have in columns 1 to 8.
@@ -167,14 +167,14 @@ contains
 
    !> Finds the index of the first word in a list that differs from a name by one slip of typing (`is_near`); 0 if there
    !> is none.
-   pure integer function nearest_word(name, words) result(place)
+   pure integer function nearest_word(name, words) result(number)
       character(*), intent(in) :: name       !< the name for which a word is sought
       character(*), intent(in) :: words(:)   !< (any number) the words
 
-      do place = 1, size(words)
-         if (is_near(name, words(place))) return
+      do number = 1, size(words)
+         if (is_near(name, words(number))) return
       end do
-      place = 0
+      number = 0
    end function nearest_word
 
    !> Tells whether a word becomes another word if at most one letter is changed, left out or added, or if two

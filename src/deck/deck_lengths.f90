@@ -100,15 +100,15 @@ contains
       !> Checks a length after all lengths have been applied: another distance of its points is an error.
       subroutine check_length(i)
          integer, intent(in) :: i            !< number of the length
-         real(wp) :: place(2, 2), apart
+         real(wp) :: position(2, 2), apart
          integer :: j
 
          associate (m => set%mechanism, one => set%mechanism%lengths(i))
             do j = 1, 2
-               place(:, j) = drawn_place(m, one%point(j))
+               position(:, j) = drawn_place(m, one%point(j))
             end do
-            apart = norm2(place(:, 2) - place(:, 1))
-            if (abs(apart - one%length) > 4.0_wp*same_place_tolerance*(one%length + norm2(place))) &
+            apart = norm2(position(:, 2) - position(:, 1))
+            if (abs(apart - one%length) > 4.0_wp*same_place_tolerance*(one%length + norm2(position))) &
                call add_card_error(set, length_open, card_of(i), real_1, amount(apart))
          end associate
       end subroutine check_length

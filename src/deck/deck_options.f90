@@ -31,7 +31,7 @@ module deck_options
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
    !> The forms of cards of requests, in the order in which they are read.
-   integer, parameter :: in_turn(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
+   integer, parameter :: request_forms(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
    !> The words of PRINT and EXTREMES: 0 for everything, then the kinds request_link to request_measure.
    character(*), parameter :: print_words(0:request_measure) = &
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
@@ -47,7 +47,7 @@ contains
    subroutine build_options(set)
       type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       real(wp) :: instants(3*set%number_of(form_at))
-      integer :: first(size(card_forms)), k, i, n, place
+      integer :: first(size(card_forms)), k, i, n, chosen
 
       first = 0
       n = 0
@@ -74,14 +74,14 @@ contains
                   call add_card_error(set, word_unknown, k, label_b, 'RAD, DEG')
 
             case (form_lang)
-               call match_word(set, k, ['EN', 'PL'], place)
-               m%polish = place == 2
+               call match_word(set, k, ['EN', 'PL'], chosen)
+               m%polish = chosen == 2
 
             case (form_method)
                if (.not. card%valid) cycle
-               place = 0
-               if (label(label_a) /= '') call match_word(set, k, method_words, place)
-               if (place > 0) m%method = place
+               chosen = 0
+               if (label(label_a) /= '') call match_word(set, k, method_words, chosen)
+               if (chosen > 0) m%method = chosen
                m%tolerance = card%real(1)
                if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &
                    (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
@@ -171,11 +171,11 @@ contains
          call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
 
-      do i = 1, size(in_turn)
+      do i = 1, size(request_forms)
          seen = name_table_t()
          do k = 1, set%count
-            if (set%cards(k)%form /= in_turn(i) .or. .not. set%cards(k)%valid) cycle
-            select case (in_turn(i))
+            if (set%cards(k)%form /= request_forms(i) .or. .not. set%cards(k)%valid) cycle
+            select case (request_forms(i))
             case (form_print)
                call read_subjects(k, request_t(every=every(k)))
             case (form_column)
@@ -192,7 +192,8 @@ contains
 
             case default
                n = n + 1
-               requests(n) = request_t(merge(request_pole, request_curve, in_turn(i) == form_pole), every=every(k))
+               requests(n) = request_t(merge(request_pole, request_curve, request_forms(i) == form_pole), &
+                  every=every(k))
                associate (one => requests(n))
                   if (one%kind == request_pole) then
                      call look_up(set, request_link, k, label_a, one%second)
@@ -227,12 +228,12 @@ contains
          type(request_t), intent(in) :: request   !< without kind and subject
          type(request_t) :: one
          integer, allocatable :: links(:), ratios(:)
-         integer :: earlier, place
+         integer :: earlier, chosen, kind, added
 
-         call match_word(set, k, [character(8) :: print_words, ratio_word], place)
-         if (place == 0) return
+         call match_word(set, k, [character(8) :: print_words, ratio_word], chosen)
+         if (chosen == 0) return
          one = request
-         one%kind = place - 1
+         one%kind = chosen - 1
 
          associate (name => set%cards(k)%label(label_b))
             call store_name(seen(one%kind), name, k, earlier)
@@ -245,8 +246,8 @@ contains
                   call seek_columns(one)
                   return
                end if
-               do place = request_link, request_measure
-                  one%kind = place
+               do kind = request_link, request_measure
+                  one%kind = kind
                   call request_all(one)
                end do
 
@@ -268,7 +269,7 @@ contains
                   if (size(links) > 0 .and. all(set%mechanism%links(links)%ground)) &
                      call add_card_error(set, is_ground, k, label_b)
                end if
-               call add_request(one, place)
+               call add_request(one, added)
             end if
          end associate
       end subroutine read_subjects
@@ -341,16 +342,16 @@ contains
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t) :: request
          character(:), allocatable :: words
-         integer :: place, i, j, first
+         integer :: chosen, i, j, first
 
-         call match_word(set, k, [character(8) :: print_words(request_link:), ratio_word], place)
-         if (place == 0) return
-         if (place == word_ratio) then
+         call match_word(set, k, [character(8) :: print_words(request_link:), ratio_word], chosen)
+         if (chosen == 0) return
+         if (chosen == word_ratio) then
             call read_ratio_columns(k)
             return
          end if
-         request = request_t(place, every=0)
-         call look_up(set, place, k, label_b, request%subject)
+         request = request_t(chosen, every=0)
+         call look_up(set, chosen, k, label_b, request%subject)
          if (request%subject == 0) return
          call add_request(request, i)
          requests(i)%in_columns = .true.
@@ -364,7 +365,7 @@ contains
                   words = words//trim(word)
                   if (quantity == word) call add_column(k, column_request_t(i, column%at))
                   if (quantity /= '' .or. column%order > 0) cycle
-                  if (place == request_link .and. has_drawing(set) .and. column%at(1) < 3) then
+                  if (chosen == request_link .and. has_drawing(set) .and. column%at(1) < 3) then
                      if (.not. has_axes(request%subject)) cycle
                   end if
                   call add_column(k, column_request_t(i, column%at))

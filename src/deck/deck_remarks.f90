@@ -241,7 +241,7 @@ contains
          type(unit_t) :: unit
          character(label_length) :: labels(3)
          character(real_width) :: text
-         real(wp) :: x, place(2)
+         real(wp) :: x, position(2)
          integer :: i
 
          associate (card => set%cards(k), m => set%mechanism)
@@ -279,9 +279,9 @@ contains
             end do
 
             if (card%form == form_length) then
-               place = drawn_place(m, m%lengths(card%subject)%point(2))
+               position = drawn_place(m, m%lengths(card%subject)%point(2))
                do i = 1, 2
-                  call append_real(i + 1, axis_words(i)//drawn_text(place(i)))
+                  call append_real(i + 1, axis_words(i)//drawn_text(position(i)))
                end do
             end if
          end associate

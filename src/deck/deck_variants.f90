@@ -323,7 +323,7 @@ contains
       integer, intent(in) :: i               !< number of the VARY card
       type(varied_t), intent(inout) :: one   !< gets `list`, or `first` and `last`, and `count`
       type(error_code_t) :: error
-      integer :: count_given, place
+      integer :: count_given, wrong
 
       associate (card => set%cards(i))
          if (card%label(label_b) == list_word) then
@@ -333,7 +333,7 @@ contains
             return
          end if
 
-         call read_whole(trim(card%label(label_b)), count_given, error, place)
+         call read_whole(trim(card%label(label_b)), count_given, error, wrong)
          if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_card_error(set, vary_count, i, label_b, whole(max_variants))
          else if (card%given(3) .or. (count_given == 1 .and. card%given(2))) then
@@ -398,9 +398,9 @@ contains
       end if
       if (is_done) return
       do i = 1, size(values)
-         associate (card => variation%set%cards(variation%numbers(i)%card), place => variation%numbers(i)%place)
-            card%real(place) = values(i)
-            card%given(place) = .true.
+         associate (card => variation%set%cards(variation%numbers(i)%card), real_number => variation%numbers(i)%place)
+            card%real(real_number) = values(i)
+            card%given(real_number) = .true.
          end associate
       end do
       variation%set%errors = none
@@ -413,16 +413,16 @@ contains
       type(variation_t), intent(in) :: variation   !< of the set
       integer, intent(in) :: n               !< number of the variant, 1 to variation%total
       real(wp) :: values(size(variation%numbers))
-      integer :: place(size(variation%counts)), rest, i, k
+      integer :: index_on_axis(size(variation%counts)), rest, i, k
 
       rest = n - 1
-      do i = size(place), 1, -1
-         place(i) = mod(rest, variation%counts(i))
+      do i = size(index_on_axis), 1, -1
+         index_on_axis(i) = mod(rest, variation%counts(i))
          rest = rest/variation%counts(i)
       end do
       do i = 1, size(values)
          associate (one => variation%numbers(i))
-            k = place(one%axis)
+            k = index_on_axis(one%axis)
             if (allocated(one%list)) then
                values(i) = one%list(k + 1)
             else if (k > 0 .and. k == one%count - 1) then

@@ -162,7 +162,7 @@ contains
       character(*), intent(in) :: text       !< the wrong text; '': none
       character(*), intent(in), optional :: more   !< the end of the sentence, if it has one
       character(1), parameter :: next = new_line('a')
-      character(:), allocatable :: lines, head, shown, margin, place
+      character(:), allocatable :: lines, head, shown, margin, address
       character(3) :: number
       integer :: form, tens
 
@@ -170,7 +170,7 @@ contains
       if (errors%count > max_printed) return
       lines = ''
       if (allocated(errors%lines)) lines = errors%lines//next
-      place = ''
+      address = ''
       form = code%layout
       if (card%number > 0) then
          head = whole(card%number)//' |'
@@ -185,15 +185,15 @@ contains
          if (column <= 10*tens) lines = lines//margin//repeat(' ', column - 1)//'^'
          lines = lines//next
 
-         place = 'CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '//trim(field%name)//': '
-         if (text /= '') place = place//'"'//printable(trim(text))//'" '
+         address = 'CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '//trim(field%name)//': '
+         if (text /= '') address = address//'"'//printable(trim(text))//'" '
          ! Without a text the sentence would have no subject.
-         if (text == '' .and. index(code%sentence, 'IS ') == 1) place = place//'A BLANK FIELD '
+         if (text == '' .and. index(code%sentence, 'IS ') == 1) address = address//'A BLANK FIELD '
          if (form == own_layout) form = find_form(card%text(:label_length))
       end if
 
       write (number, '(i3.3)') code%number
-      lines = lines//' *** E'//number//'  '//place//trim(code%sentence)
+      lines = lines//' *** E'//number//'  '//address//trim(code%sentence)
       if (present(more)) lines = trim(lines//' '//more)
       if (form /= form_unknown) lines = lines//next//' LAYOUT    |'//trim(card_forms(form)%layout)
       call move_alloc(lines, errors%lines)

@@ -36,7 +36,7 @@ module block_matrix
    !> With a larger `distance` a matrix is factored itself: each pass of refinement gains its four digits.
    real(wp), parameter :: max_distance = 1.0e-4_wp
    !> A relative error below this is negligible compared with the error of a factorization.
-   real(wp), parameter :: lost = 0.125_wp*epsilon(1.0_wp)
+   real(wp), parameter :: negligible_error = 0.125_wp*epsilon(1.0_wp)
 
 contains
 
@@ -256,7 +256,7 @@ contains
 
       x = times(near%inverse, right)
       error = near%distance
-      do while (error > lost)
+      do while (error > negligible_error)
          x = x + times(near%inverse, right - times(near%a, x))
          error = error*near%distance
       end do

@@ -48,12 +48,12 @@ contains
       integer :: j
 
       if (m%points(i)%hole > 0) return
-      m%points(i)%place = place_on_card(m, i)
+      m%points(i)%place = position_on_card(m, i)
       do j = 1, size(m%points)
          if (m%points(j)%link == 0) cycle
          if (body_of(m, j) /= body_of(m, i) .or. .not. is_movable(m, j)) cycle
-         associate (place => place_on_card(m, j), here => m%points(i)%place)
-            if (norm2(place - here) > same_place_tolerance*(norm2(place) + norm2(here))) cycle
+         associate (position => position_on_card(m, j), here => m%points(i)%place)
+            if (norm2(position - here) > same_place_tolerance*(norm2(position) + norm2(here))) cycle
             m%points(j)%place = here
             m%points(j)%hole = i
          end associate
@@ -62,28 +62,28 @@ contains
 
    !> Finds the position x, y (2) of a point in the drawing, in the deck's unit of length, if no length has moved the
    !> point.
-   pure function place_on_card(m, i) result(place)
+   pure function position_on_card(m, i) result(position)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the point
-      real(wp) :: place(2)
+      real(wp) :: position(2)
 
-      place = m%points(i)%place
-      if (.not. m%points(i)%drawn) place = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
-   end function place_on_card
+      position = m%points(i)%place
+      if (.not. m%points(i)%drawn) position = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
+   end function position_on_card
 
    !> Computes the axes of each link that begin at FROM and point to TO, with the angle in (-pi, pi]. Then computes xi
    !> and eta of all points of JOINT cards, and of all points that lengths have moved, in the axes of their links.
-   pure subroutine set_axes(m, place)
+   pure subroutine set_axes(m, position)
       type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: place(:, :)    !< (2, points) x, y of all points in the drawing, length
+      real(wp), intent(in) :: position(:, :) !< (2, points) x, y of all points in the drawing, length
       real(wp) :: axes(3)
       integer :: i, k
 
       do i = 1, size(m%links)
          associate (link => m%links(i))
             if (link%from == 0) cycle
-            axes(:2) = place(:, link%to) - place(:, link%from)
-            axes = [place(:, link%from), atan2(axes(2), axes(1))]
+            axes(:2) = position(:, link%to) - position(:, link%from)
+            axes = [position(:, link%from), atan2(axes(2), axes(1))]
             if (axes(3) <= -pi) axes(3) = pi
             where (link%along) link%position = axes
          end associate
@@ -92,7 +92,7 @@ contains
       do i = 1, size(m%points)
          associate (point => m%points(i))
             if (point%link == 0 .or. .not. (point%drawn .or. point%moves)) cycle
-            point%offset = rotated(place(:, i) - m%links(point%link)%position(:2), &
+            point%offset = rotated(position(:, i) - m%links(point%link)%position(:2), &
                direction(-m%links(point%link)%position(3)))
          end associate
       end do
@@ -124,12 +124,12 @@ contains
       type(mechanism_t), intent(inout) :: m
       type(reach_t), intent(out), optional :: reached(:)   !< (lengths) faults of each hole, at its first length
       type(reach_t) :: reach
-      real(wp) :: place(2, size(m%points)), q(2), way(2), ray(2, 2), open(2)
+      real(wp) :: position(2, size(m%points)), q(2), way(2), ray(2, 2), correction(2)
       integer :: i, k, lengths
       logical :: is_one
 
       do i = 1, size(m%points)
-         place(:, i) = m%points(i)%place
+         position(:, i) = m%points(i)%place
       end do
 
       lengths = 0
@@ -143,17 +143,17 @@ contains
 
             ! With one length the hole keeps its direction from P.
             if (is_one) then
-               way = q - place(:, one%point(1))
-               reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(place(:, one%point(1))))
-               if (.not. reach%has_no_side) q = place(:, one%point(1)) + one%length*(way/norm2(way))
+               way = q - position(:, one%point(1))
+               reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(position(:, one%point(1))))
+               if (.not. reach%has_no_side) q = position(:, one%point(1)) + one%length*(way/norm2(way))
             else
-               associate (centre => place(:, [one%point(1), next%point(1)]), radius => [one%length, next%length], &
+               associate (centre => position(:, [one%point(1), next%point(1)]), radius => [one%length, next%length], &
                      point => m%points(one%point(2)))
                   ray = spread(point_of(m%links(point%link)%position, point%offset), 2, 2) - centre
                   if (point%moves .and. abs(cross(ray(:, 1), ray(:, 2))) > same_place_tolerance*product(radius)) then
-                     open = 0.5_wp*(radius**2 - sum(ray**2, dim=1))/cross(ray(:, 1), ray(:, 2))
-                     q = centre(:, 1) + ray(:, 1) + [open(1)*ray(2, 2) - open(2)*ray(2, 1), &
-                        open(2)*ray(1, 1) - open(1)*ray(1, 2)]
+                     correction = 0.5_wp*(radius**2 - sum(ray**2, dim=1))/cross(ray(:, 1), ray(:, 2))
+                     q = centre(:, 1) + ray(:, 1) + [correction(1)*ray(2, 2) - correction(2)*ray(2, 1), &
+                        correction(2)*ray(1, 1) - correction(1)*ray(1, 2)]
                   else
                      call find_intersection(centre, radius, q, reach)
                   end if
@@ -162,22 +162,22 @@ contains
 
             do i = 1, size(m%points)
                if (m%points(i)%hole /= one%hole(2)) cycle
-               place(:, i) = q
+               position(:, i) = q
                m%points(i)%moves = .true.
             end do
             if (present(reached)) reached(k) = reach
          end associate
          k = k + merge(1, 2, is_one)
       end do
-      call set_axes(m, place)
+      call set_axes(m, position)
    end subroutine apply_lengths
 
    !> Finds that intersection of two circles that lies on the side of a point. If the circles do not meet, the result is
    !> a point on the line through their centres, and `missing` is above 0. Concentric circles leave the point.
-   pure subroutine find_intersection(centre, radius, place, reach)
+   pure subroutine find_intersection(centre, radius, point, reach)
       real(wp), intent(in) :: centre(2, 2)   !< (coordinates, circles) in the deck's unit of length
       real(wp), intent(in) :: radius(2)      !< (circles) in the deck's unit of length
-      real(wp), intent(inout) :: place(2)    !< x, y of the point (length); becomes the intersection
+      real(wp), intent(inout) :: point(2)    !< x, y of the point (length); becomes the intersection
       type(reach_t), intent(inout) :: reach  !< gets `missing` and `has_no_side`
       real(wp) :: way(2), e(2), d, along, square, side
 
@@ -191,9 +191,9 @@ contains
       square = (radius(1) - along)*(radius(1) + along)
       ! The circles touch but for rounding.
       if (square <= same_place_tolerance*radius(1)**2) square = 0.0_wp
-      side = cross(e, place - centre(:, 1))
+      side = cross(e, point - centre(:, 1))
       reach%has_no_side = square > 0.0_wp .and. &
-         abs(side) <= same_place_tolerance*(norm2(place) + norm2(centre(:, 1)) + norm2(centre(:, 2)))
-      place = centre(:, 1) + along*e + sign(sqrt(square), side)*[-e(2), e(1)]
+         abs(side) <= same_place_tolerance*(norm2(point) + norm2(centre(:, 1)) + norm2(centre(:, 2)))
+      point = centre(:, 1) + along*e + sign(sqrt(square), side)*[-e(2), e(1)]
    end subroutine find_intersection
 end module drawn_lengths

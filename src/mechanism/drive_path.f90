@@ -18,7 +18,7 @@ module drive_path
    !> Equal steps of time in which a drive is searched for a change of direction: two turns within one are not seen.
    integer, parameter :: value_steps = 64
    !> Pivots at the ends of a substep give the position of a change point within this part of the substep.
-   real(wp), parameter :: not_told = 1.0e-3_wp
+   real(wp), parameter :: part_uncertainty = 1.0e-3_wp
 
    !> The laws of all drives and, on a leg, their linear motion.
    type :: drive_path_t
@@ -201,8 +201,8 @@ contains
       at = time_of(part)
       first = drive_at(path, i, p1)
       last = drive_at(path, i, p2)
-      low = merge(p1, time_of(part - not_told), first(2)*last(2) < 0.0_wp)
-      high = merge(p2, time_of(part + not_told), first(2)*last(2) < 0.0_wp)
+      low = merge(p1, time_of(part - part_uncertainty), first(2)*last(2) < 0.0_wp)
+      high = merge(p2, time_of(part + part_uncertainty), first(2)*last(2) < 0.0_wp)
       if (.not. slows_down(low) .or. slows_down(high)) return
       do k = 1, digits(1.0_wp)
          call halve(slows_down(middle_of(low, high)), low, high)

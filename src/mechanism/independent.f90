@@ -51,7 +51,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: set        !< the set, divided
       type(sorted_t) :: links, points, pairs, measures, drives, rows
-      type(numbering_t) :: place(of_drives), part(of_drives)
+      type(numbering_t) :: new_number(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:), &
          measuring(:)
       type(subject_t), allocatable :: measured(:)   ! all measures and their subjects, with the part `measuring` of each
@@ -69,7 +69,7 @@ contains
       link_part = part_of_links(m)
       set%count = maxval([1, link_part])
       if (set%count == 1) then
-         call take_whole(m, set)
+         call make_single_part(m, set)
          return
       end if
       pair_part = [(part_of(link_part, pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
@@ -114,7 +114,7 @@ contains
       associate (n => [size(m%links), size(m%points), size(m%pairs), maxval([0, pack(measured%number, &
                        measured%kind == request_measure)]), size(m%drives)])
          do k = 1, of_drives
-            allocate (place(k)%of(0:n(k)), source=0)
+            allocate (new_number(k)%of(0:n(k)), source=0)
          end do
       end associate
 
@@ -131,7 +131,7 @@ contains
             i=1, size(m%branch_requests))])
          set%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
          set%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
-         call separate_mechanism(m, part, own_rows, branches, place, set%parts(k))
+         call separate_mechanism(m, part, own_rows, branches, new_number, set%parts(k))
          call move_alloc(part(request_link)%of, set%cards(k)%of)
       end do
 
@@ -153,7 +153,7 @@ contains
    end subroutine divide
 
    !> Makes a divided set of one part: the whole mechanism, without its texts.
-   subroutine take_whole(m, set)
+   subroutine make_single_part(m, set)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(inout) :: set      !< has its settings and its count, 1
       integer :: i
@@ -167,12 +167,12 @@ contains
       if (allocated(m%echo)) deallocate (set%parts(1)%echo)
       if (allocated(m%remarks)) deallocate (set%parts(1)%remarks)
       if (allocated(m%branch_requests)) set%parts(1)%branch_requests%card = [(i, i=1, size(m%branch_requests))]
-      call take_lengths(set%parts(1))
-   end subroutine take_whole
+      call set_characteristic_sizes(set%parts(1))
+   end subroutine make_single_part
 
    !> Computes the characteristic sizes of a part that its rows need: the length for measures; length and rate for poles
    !> and curves.
-   subroutine take_lengths(own)
+   subroutine set_characteristic_sizes(own)
       type(mechanism_t), intent(inout) :: own   !< the part, with its requests and measures
 
       if (allocated(own%measures)) own%measures%length = characteristic_length(own)
@@ -180,7 +180,7 @@ contains
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
       end if
-   end subroutine take_lengths
+   end subroutine set_characteristic_sizes
 
    !> Lists each measure, the measures within this measure, and all their subjects, each with the part of the links of
    !> the measure. Subjects on the ground are listed for several parts.
@@ -232,69 +232,69 @@ contains
    end function part_of_links
 
    !> Makes a mechanism of a part of a set, in the part's own numbers.
-   subroutine separate_mechanism(m, part, rows, branches, place, own)
+   subroutine separate_mechanism(m, part, rows, branches, new_number, own)
       type(mechanism_t), intent(in) :: m     !< the set
       type(numbering_t), intent(in) :: part(:)   !< (of_drives) for each kind, members' numbers in the set
       integer, intent(in) :: rows(:)         !< (rows of the part) numbers of its requests in the set
       integer, intent(in) :: branches(:)     !< (BRANCH cards of the part) their numbers in the set
       !> (of_drives) for each kind, scratch (0:members of the set): zeros before and after. Reason: each of many parts
       !> then takes only the time of its own size.
-      type(numbering_t), intent(inout) :: place(:)
+      type(numbering_t), intent(inout) :: new_number(:)
       type(mechanism_t), intent(out) :: own  !< the part
       logical, allocatable :: kept(:)        ! (lengths) the length belongs to the part
       integer :: i, k, kind
 
       do kind = 1, size(part)
-         place(kind)%of(part(kind)%of) = [(i, i=1, size(part(kind)%of))]
+         new_number(kind)%of(part(kind)%of) = [(i, i=1, size(part(kind)%of))]
       end do
       own%settings_t = m%settings_t
       own%links = m%links(part(request_link)%of)
       own%points = m%points(part(request_point)%of)
-      own%points%link = place(request_link)%of(own%points%link)
+      own%points%link = new_number(request_link)%of(own%points%link)
       own%pairs = m%pairs(part(request_pair)%of)
-      own%pairs%point_i = place(request_point)%of(own%pairs%point_i)
-      own%pairs%point_j = place(request_point)%of(own%pairs%point_j)
-      own%pairs%pin = place(request_point)%of(own%pairs%pin)
+      own%pairs%point_i = new_number(request_point)%of(own%pairs%point_i)
+      own%pairs%point_j = new_number(request_point)%of(own%pairs%point_j)
+      own%pairs%pin = new_number(request_point)%of(own%pairs%pin)
 
       if (allocated(m%measures)) then
          own%measures = m%measures(part(request_measure)%of)
          do i = 1, size(own%measures)
             do k = 1, size(own%measures(i)%subjects)
                associate (one => own%measures(i)%subjects(k))
-                  one%number = place(one%kind)%of(one%number)
+                  one%number = new_number(one%kind)%of(one%number)
                end associate
             end do
          end do
       end if
 
       own%drives = m%drives(part(of_drives)%of)
-      own%drives%second = place(request_link)%of(own%drives%second)
+      own%drives%second = new_number(request_link)%of(own%drives%second)
       do i = 1, size(own%drives)
-         own%drives(i)%subject = place(driven_kinds(own%drives(i)%kind))%of(own%drives(i)%subject)
+         own%drives(i)%subject = new_number(driven_kinds(own%drives(i)%kind))%of(own%drives(i)%subject)
       end do
       own%requests = m%requests(rows)
-      own%requests%second = place(request_link)%of(own%requests%second)
-      own%requests%drive = place(of_drives)%of(own%requests%drive)
+      own%requests%second = new_number(request_link)%of(own%requests%second)
+      own%requests%drive = new_number(of_drives)%of(own%requests%drive)
       do i = 1, size(own%requests)
-         own%requests(i)%subject = place(kinds_of_rows(own%requests(i)%kind)%subject)%of(own%requests(i)%subject)
+         own%requests(i)%subject = new_number(kinds_of_rows(own%requests(i)%kind)%subject)%of(own%requests(i)%subject)
       end do
 
       if (allocated(m%branch_requests)) then
          own%branch_requests = m%branch_requests(branches)
          own%branch_requests%card = branches
-         own%branch_requests%link = place(request_link)%of(own%branch_requests%link)
+         own%branch_requests%link = new_number(request_link)%of(own%branch_requests%link)
       end if
 
       if (allocated(m%lengths)) then
-         associate (of => place(request_point)%of)
+         associate (of => new_number(request_point)%of)
             kept = of(m%lengths%point(1)) > 0 .and. of(m%lengths%point(2)) > 0
             own%lengths = pack(m%lengths, kept)
             own%lengths%point(1) = of(own%lengths%point(1))
             own%lengths%point(2) = of(own%lengths%point(2))
          end associate
       end if
-      own%links%from = place(request_point)%of(own%links%from)
-      own%links%to = place(request_point)%of(own%links%to)
+      own%links%from = new_number(request_point)%of(own%links%from)
+      own%links%to = new_number(request_point)%of(own%links%to)
 
       if (allocated(m%tolerances)) then
          own%tolerances = m%tolerances
@@ -305,16 +305,16 @@ contains
                else if (one%kind == parameter_hole) then
                   one%subject = findloc(own%points%hole, m%points(one%subject)%hole, dim=1)
                else
-                  one%subject = place(of_numbers(one%kind))%of(one%subject)
+                  one%subject = new_number(of_numbers(one%kind))%of(one%subject)
                end if
             end associate
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end if
 
-      call take_lengths(own)
+      call set_characteristic_sizes(own)
       do kind = 1, size(part)
-         place(kind)%of(part(kind)%of) = 0
+         new_number(kind)%of(part(kind)%of) = 0
       end do
    end subroutine separate_mechanism
 

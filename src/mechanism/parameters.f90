@@ -187,13 +187,13 @@ contains
       type(mechanism_t), intent(in), target :: m
       type(parameter_t), intent(in) :: number   !< its address
       real(wp), pointer :: x
-      real(wp) :: place(2)
+      real(wp) :: position(2)
 
       x => number_in(m, number)
       value = x
       if (all(number%kind /= [parameter_joint, parameter_hole])) return
-      place = point_of(m%links(m%points(number%subject)%link)%position, m%points(number%subject)%offset)
-      value = place(number%place)
+      position = point_of(m%links(m%points(number%subject)%link)%position, m%points(number%subject)%offset)
+      value = position(number%place)
    end function parameter_value
 
    !> Points to the component of a mechanism that holds a number; for a JOINT card, to xi or eta of its first point.
@@ -317,7 +317,7 @@ contains
    pure recursive subroutine follow_drawing(m, before)
       type(mechanism_t), intent(inout) :: m
       type(mechanism_t), allocatable, intent(in) :: before   !< the earlier mechanism; without lengths not allocated
-      type(mechanism_t), allocatable :: taken, none
+      type(mechanism_t), allocatable :: drawn_before, none
       integer :: i
 
       do i = 1, size(m%pairs)
@@ -327,13 +327,13 @@ contains
          if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
       end do
       if (.not. allocated(before)) return
-      taken = before
-      call follow_drawing(taken, none)
-      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - taken%pairs%alpha)
-      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - taken%pairs%offset)
-      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - taken%pairs%beta)
+      drawn_before = before
+      call follow_drawing(drawn_before, none)
+      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - drawn_before%pairs%alpha)
+      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - drawn_before%pairs%offset)
+      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - drawn_before%pairs%beta)
       where (m%drives%drawn) m%drives%polynomial(1) = before%drives%polynomial(1) &
-         + (m%drives%polynomial(1) - taken%drives%polynomial(1))
+         + (m%drives%polynomial(1) - drawn_before%drives%polynomial(1))
    end subroutine follow_drawing
 
    !> Tells whether the drawing gives the value of a number: the number is blank on its card, in a deck with JOINT

@@ -47,7 +47,7 @@ contains
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: counts(:)       !< (points) the extent of its link includes the point
       real(wp), allocatable :: low(:, :), high(:, :)
-      real(wp) :: place(2), origin(2), start
+      real(wp) :: position(2), origin(2), start
       integer :: i, k
 
       origin = plane_origin(m)
@@ -56,17 +56,17 @@ contains
       do i = 1, size(m%points)
          if (.not. counts(i)) cycle
          k = m%points(i)%link
-         place = m%points(i)%offset
+         position = m%points(i)%offset
          if (m%links(k)%ground) then
-            place = point_of(m%links(k)%position - [origin, 0.0_wp], place)
+            position = point_of(m%links(k)%position - [origin, 0.0_wp], position)
             k = 0
          else
             ! The origin of the link counts too: the card estimates its position within the mechanism.
             low(:, k) = min(low(:, k), 0.0_wp)
             high(:, k) = max(high(:, k), 0.0_wp)
          end if
-         low(:, k) = min(low(:, k), place)
-         high(:, k) = max(high(:, k), place)
+         low(:, k) = min(low(:, k), position)
+         high(:, k) = max(high(:, k), position)
       end do
 
       length = max(0.0_wp, maxval(high - low, mask=high >= low))

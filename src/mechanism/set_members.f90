@@ -67,14 +67,14 @@ contains
 
    !> Finds the numbers (any number) of the rows whose extremes are requested, without rows of the ground, which does
    !> not move.
-   pure function moving_extremes(set) result(asked)
+   pure function moving_extremes(set) result(requested)
       class(set_t), intent(in) :: set        !< a divided set
-      integer, allocatable :: asked(:)
+      integer, allocatable :: requested(:)
       type(request_t) :: requests(size(set%rows))
       integer :: i
 
       requests = requests_of(set)
-      asked = pack([(i, i=1, size(requests))], requests%extremes .and. &
+      requested = pack([(i, i=1, size(requests))], requests%extremes .and. &
          .not. [(is_fixed(set%parts(set%rows(i)%part), requests(i)), i=1, size(requests))])
    end function moving_extremes
 
