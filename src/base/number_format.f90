@@ -148,7 +148,7 @@ contains
       if (value < 0.0_wp) text(first - 1:first - 1) = '-'
    end function with_exponent
 
-   !> Writes an exponent with its sign and three digits, or four if it needs them.
+   !> Writes an exponent of ten with its sign and three digits, or four from 1000 on.
    pure subroutine write_exponent(exponent, text)
       integer, intent(in) :: exponent        !< between -9999 and 9999
       character(table_exponent_length), intent(out) :: text   !< left-adjusted
@@ -247,7 +247,7 @@ contains
       length = len_trim(text)
    end subroutine write_full
 
-   !> Writes the last digits of a whole number, as many as the text is long.
+   !> Writes the last digits of a whole number into a text, as many as the text has characters.
    pure subroutine write_digits(n, text, before)
       integer(int64), intent(in) :: n        !< 0 or more
       character(*), intent(inout) :: text    !< becomes digits only, with leading zeros
@@ -306,7 +306,7 @@ contains
    !> Gives the whole number nearest to value 10**k, the even one of two equally near. If the number has more than 12
    !> digits, the result is 10**12 at least.
    pure integer(int64) function nearest_whole(value, k) result(n)
-      real(wp), intent(in) :: value          !< 0 or more
+      real(wp), intent(in) :: value          !< a number, 0 or more
       integer, intent(in) :: k               !< exponent of ten, of any sign
       logical :: sure
 
@@ -317,7 +317,7 @@ contains
    !> Finds the whole number nearest to value 10**k, the even one of two equally near, and tells whether the decision is
    !> certain. Source: Dekker, Numer. Math. 18 (1971) 224.
    pure subroutine decide_whole(value, k, n, sure)
-      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      real(wp), intent(in) :: value          !< a number, 0 or more, or NaN
       integer, intent(in) :: k               !< exponent of ten, of any sign
       integer(int64), intent(out) :: n       !< the whole number, if `sure`; otherwise of no use
       logical, intent(out) :: sure           !< the decision is certain, and `n` is 2E17 at most
@@ -361,7 +361,7 @@ contains
 
    !> Finds the first digits of a number and its exponent: value = n 10**(exponent - count + 1), rounded.
    pure subroutine first_digits(value, count, n, exponent)
-      real(wp), intent(in) :: value          !< finite, 0 or more
+      real(wp), intent(in) :: value          !< a finite number, 0 or more
       integer, intent(in) :: count           !< how many digits, 1 to 18
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
       integer, intent(out) :: exponent       !< of ten, of the first digit; 0 for 0
@@ -371,10 +371,10 @@ contains
       if (.not. sure) call digits_by_format(value, count, n, exponent)
    end subroutine first_digits
 
-   !> Finds the first digits of a number and its exponent by two reals, and tells whether they are certain. The value is
-   !> n 10**(power - count + 1), rounded.
+   !> Finds the first digits of a number and its exponent by two reals, and tells whether these digits are certain. The
+   !> value is n 10**(power - count + 1), rounded.
    pure subroutine leading_digits(value, count, n, power, sure)
-      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      real(wp), intent(in) :: value          !< a number, 0 or more, or NaN
       integer, intent(in) :: count           !< how many digits, 1 to `significant`
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count, if `sure`
       integer, intent(out) :: power          !< exponent of ten of the first digit, if `sure`
@@ -399,7 +399,7 @@ contains
    !> infinity and for NaN the result is huge(n). Rejected: the scale factor kP. The library of gfortran prints wrong
    !> digits from -21P down. In a narrow field with some hundreds of P it writes beyond its own buffer.
    pure function nearest_by_format(value, k) result(n)
-      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      real(wp), intent(in) :: value          !< a number, 0 or more, or NaN
       integer, intent(in) :: k               !< exponent of ten, of any sign
       integer(int64) :: n
       character(80) :: line
@@ -425,7 +425,7 @@ contains
 
    !> Finds the first digits of a number and its exponent by a format: value = n 10**(exponent - count + 1), rounded.
    pure subroutine digits_by_format(value, count, n, exponent)
-      real(wp), intent(in) :: value          !< finite, 0 or more
+      real(wp), intent(in) :: value          !< a finite number, 0 or more
       integer, intent(in) :: count           !< how many digits, 1 to 18
       integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
       integer, intent(out) :: exponent       !< of ten, of the first digit; 0 for 0

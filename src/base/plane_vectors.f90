@@ -41,7 +41,8 @@ contains
       if (abs(rounded*degree - angle) <= 0.0_wp) d = rounded
    end function in_degrees
 
-   !> Gives an angle without its whole turns, between -pi and pi. An angle in this range stays as it is.
+   !> Gives an angle without its whole turns, between -pi and pi (rad). An angle inside this range stays as it is; pi
+   !> and -pi may become one another.
    pure elemental real(wp) function wrap_angle(angle) result(rest)
       real(wp), intent(in) :: angle          !< rad
 

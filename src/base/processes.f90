@@ -61,7 +61,7 @@ module processes
          integer(c_int), value :: process     !< its number
          integer(c_int), value :: number      !< the number of the signal
       end function kill
-      !> Ends the process at once: _exit(2). Text that its parent has buffered is not written.
+      !> Ends this process at once: _exit(2). Buffered text, such as a copy of the parent's, is not written.
       subroutine end_process(status) bind(c, name='_exit')
          import :: c_int
          integer(c_int), value :: status   !< exit status
@@ -73,10 +73,11 @@ module processes
          integer(c_size_t), value :: length   !< bytes of `mask`
          integer(c_int64_t), intent(inout) :: mask(*)   !< (length/8) a bit for each processor; 1: may be used
       end function sched_getaffinity
-      !> Makes a file without a name in memory: memfd_create(2). The result is its descriptor, negative for an error.
+      !> Makes a file without a name in memory: memfd_create(2). The result is the file's descriptor, or -1 for an
+      !> error.
       integer(c_int) function memfd_create(name, flags) bind(c)
          import :: c_char, c_int
-         character(kind=c_char), intent(in) :: name(*)   !< for those who look at the process; ends with a null
+         character(kind=c_char), intent(in) :: name(*)   !< (any length) shown by the system; ends with a null
          integer(c_int), value :: flags       !< 0
       end function memfd_create
       !> Changes the position of an open file, for all processes that share the file, without an interruption: lseek(2).

@@ -69,19 +69,19 @@ module system_calls
          integer(c_int), value :: directory   !< where the path begins: `from_working_directory` or a descriptor
          integer(c_int), value :: flags       !< 0, `empty_path` or `no_links`
          integer(c_int), value :: mask        !< the facts that are wanted: `basic_facts`
-         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         character(kind=c_char), intent(in) :: path(*)   !< (any length) ends with a null
          type(statx_t), intent(out) :: facts !< the facts, if the result is 0
       end function statx
       !> Opens a file that exists: open(2) without a mode. The result is a descriptor, negative for an error.
       integer(c_int) function c_open(path, flags) bind(c, name='open')
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         character(kind=c_char), intent(in) :: path(*)   !< (any length) ends with a null
          integer(c_int), value :: flags       !< `read_only` or `write_only`
       end function c_open
       !> Creates or empties a file: creat(2). The result is a descriptor, negative for an error.
       integer(c_int) function creat(path, mode) bind(c)
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         character(kind=c_char), intent(in) :: path(*)   !< (any length) ends with a null
          integer(c_int), value :: mode        !< `permissions`
       end function creat
       !> Reads bytes: read(2). The result is the number of bytes read, 0 at the end of the file, negative for an error.
@@ -103,13 +103,13 @@ module system_calls
          import :: c_int
          integer(c_int), value :: descriptor   !< of the file
       end function c_close
-      !> Cuts an open file: ftruncate(2). The result is 0, or -1 for an error.
+      !> Cuts an open file to a length: ftruncate(2). The result is 0, or -1 for an error.
       integer(c_int) function ftruncate(descriptor, length) bind(c)
          import :: c_int, c_long
          integer(c_int), value :: descriptor  !< of the file
          integer(c_long), value :: length     !< bytes that stay
       end function ftruncate
-      !> Gives 1 for a terminal, otherwise 0: isatty(3).
+      !> Tells whether an open file is a terminal: isatty(3). The result is 1 for a terminal, otherwise 0.
       integer(c_int) function isatty(descriptor) bind(c)
          import :: c_int
          integer(c_int), value :: descriptor   !< of the file
@@ -117,7 +117,7 @@ module system_calls
       !> Removes a file: unlink(2). The result is 0, or -1 for an error.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         character(kind=c_char), intent(in) :: path(*)   !< (any length) ends with a null
       end function unlink
       !> Gives the address of errno, which C offers as a macro only.
       type(c_ptr) function errno_location() bind(c, name='__errno_location')
@@ -130,7 +130,7 @@ module system_calls
          character(kind=c_char), intent(inout) :: text(*)   !< (length) the text
          integer(c_size_t), value :: length   !< characters at most, with the null
       end function strerror_r
-      !> Installs the handler of a signal: signal(2). The result is the handler before.
+      !> Installs the handler of a signal: signal(2). The result is the previous handler.
       type(c_funptr) function signal(number, handler) bind(c)
          import :: c_int, c_funptr
          integer(c_int), value :: number      !< of the signal
@@ -186,7 +186,7 @@ contains
       open_to_read = c_open(path//c_null_char, read_only)
    end function open_to_read
 
-   !> Opens a file for writing and keeps its contents, or creates it.
+   !> Opens a file for writing and keeps its contents, or creates the file if there is none.
    subroutine open_to_write(path, descriptor, made)
       character(*), intent(in) :: path       !< of the file
       integer(c_int), intent(out) :: descriptor   !< negative for an error, which `last_error` has
@@ -201,7 +201,8 @@ contains
       made = descriptor >= 0
    end subroutine open_to_write
 
-   !> Reads bytes. The result is the number of bytes read: 0 at the end of the file, negative for an error.
+   !> Reads bytes of an open file. The result is the number of bytes read: 0 at the end of the file, negative for an
+   !> error, which `last_error` has.
    integer function read_bytes(descriptor, text)
       integer(c_int), intent(in) :: descriptor   !< of an open file
       character(*), intent(out) :: text   !< gets the bytes, at most its length; the rest is undefined
@@ -209,7 +210,8 @@ contains
       read_bytes = int(c_read(descriptor, text, len(text, c_size_t)))
    end function read_bytes
 
-   !> Writes a text or its first part. The result is the number of bytes written, negative for an error.
+   !> Writes a text, or the first part of a text, to an open file. The result is the number of bytes written, negative
+   !> for an error, which `last_error` has.
    integer(c_size_t) function write_bytes(descriptor, text)
       integer(c_int), intent(in) :: descriptor   !< of an open file
       character(*), intent(in) :: text   !< the bytes
@@ -217,14 +219,14 @@ contains
       write_bytes = c_write(descriptor, text, len(text, c_size_t))
    end function write_bytes
 
-   !> Closes a file, and gives false if the system reports an error, such as a delayed write error.
+   !> Closes an open file. The result is false if the system reports an error, such as a delayed write error.
    logical function close_descriptor(descriptor)
       integer(c_int), intent(in) :: descriptor   !< of an open file
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
 
-   !> Removes a regular file. A symbolic link stays, and the file to which it leads stays.
+   !> Removes a regular file. A symbolic link stays, and the file to which the link leads. Errors are ignored.
    subroutine remove_file(path)
       character(*), intent(in) :: path   !< of the file
       type(statx_t) :: facts

@@ -233,7 +233,7 @@ contains
    !> - any other text that does not fill its field: cut.
    subroutine find_cuts(card, fields, letters, cut, errors)
       type(card_t), intent(in) :: card       !< with the fields
-      type(field_t), intent(in) :: fields(:) !< in the order of their columns, without gaps
+      type(field_t), intent(in) :: fields(:) !< (fields) in the order of their columns, without gaps
       character(*), intent(in) :: letters    !< a character for each field; -: no label, perhaps a number
       logical, intent(out) :: cut(:)         !< (fields) the text of the field is cut
       type(input_errors_t), intent(inout) :: errors   !< of the deck so far

@@ -96,8 +96,8 @@ contains
    end function name_field
 
    !> Builds the links, points and pairs of a mechanism, each kind in the order of its cards. After them come the block
-   !> of each SLOT card, a point of the block, and its revolute pair. Repeated and unknown names are errors, and so are
-   !> pairs that do not join two links.
+   !> of each SLOT card, a point of the block, and its revolute pair. Errors are repeated and unknown names, and pairs
+   !> that do not join two links.
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       real(wp) :: unit
@@ -413,7 +413,7 @@ contains
       end function is_name
    end subroutine look_up_kinds
 
-   !> Finds the word that label A of a card is. A label that is none of the words is an error, unless the card has
+   !> Finds label A of a card in a list of words. A label that is none of the words is an error, unless the card has
    !> another error.
    subroutine match_word(set, k, words, place)
       type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them

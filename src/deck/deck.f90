@@ -41,7 +41,7 @@ contains
    !> Reads the deck in a file. A failure is status_rejected (`report` has the reasons) or status_system.
    subroutine read_deck(path, sets, report, failure, variations)
       character(*), intent(in) :: path       !< of the file; '' or '-': standard input
-      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< (sets of the deck) none on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(out) :: failure   !< not allocated: the deck is right
       type(variation_t), allocatable, intent(out), optional :: variations(:)   !< (sets) empty without VARY cards
@@ -56,7 +56,7 @@ contains
    !> Reads the deck in a text. A failure is status_rejected (`report` has the reasons).
    subroutine read_deck_text(text, sets, report, failure)
       character(*), intent(in) :: text       !< lines that end in LF or CR-LF
-      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< (sets of the deck) none on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(out) :: failure     !< status_rejected; not allocated: the deck is right
       type(reading_t) :: progress
@@ -70,7 +70,7 @@ contains
    subroutine read_sets(source, progress, sets, report, failure)
       type(source_t), intent(inout) :: source   !< the open deck; not read if there is a failure
       type(reading_t), intent(inout) :: progress   !< new; gets the sets and the errors
-      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< (sets of the deck) none on any failure
       character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(inout) :: failure   !< of opening the deck; otherwise of reading it
 

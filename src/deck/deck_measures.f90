@@ -16,7 +16,7 @@ module deck_measures
 contains
 
    !> Builds the measures of a mechanism in the order of their cards. Links, points and pairs must have been built.
-   !> Unknown names are errors, and so are sums of a length and an angle and sums that contain themselves.
+   !> Errors are unknown names, sums of a length and an angle, and sums that contain themselves.
    subroutine build_measures(set)
       type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
       integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 not begun, 1 begun, 2 done

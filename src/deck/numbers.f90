@@ -19,10 +19,10 @@ module numbers
 
 contains
 
-   !> Reads a real number from a text.
+   !> Reads a real number from a text by the strict grammar: a number with the exponent D as a double.
    pure subroutine read_real(text, value, error, place)
       character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
-      real(wp), intent(out) :: value         !< 0 if there is an error
+      real(wp), intent(out) :: value         !< the number; 0 if there is an error
       type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
       integer, intent(out) :: place          !< number of the first wrong character; in all other cases 1
       integer :: first, n, power, point, letter, exponent
@@ -93,7 +93,7 @@ contains
       end if
    end subroutine read_real
 
-   !> Reads a whole number from a text.
+   !> Reads a whole number from a text by the strict grammar.
    pure subroutine read_whole(text, value, error, place)
       character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
       integer, intent(out) :: value          !< 0 if there is an error

@@ -18,7 +18,7 @@ contains
 
    !> Computes the natural cubic spline through points; two points give the straight line.
    function new_spline(times, values) result(s)
-      real(wp), intent(in) :: times(:)       !< (knots, 2 or more) strictly increasing
+      real(wp), intent(in) :: times(:)       !< (knots, 2 or more) times, strictly increasing
       real(wp), intent(in) :: values(:)      !< (knots) values at these times, length or rad
       type(spline_t) :: s
       real(wp) :: h(size(times) - 1), slope(size(times) - 1), diagonal(size(times) - 2), off(size(times) - 2)
