@@ -63,6 +63,7 @@ contains
       type(slot_t), intent(in) :: slots(:)   !< (power of two) of a table; one slot at least is free
       character(*), intent(in) :: name   !< at most `label_length` characters count
       character(label_length) :: key
+      !> A prime near 2**31, and the factor of a common polynomial hash: sums of eight characters fit in 64 bits.
       integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64
       integer(int64) :: hash
       integer :: i

@@ -2,8 +2,8 @@
 !>
 !> A table needs very many numbers: their digits come from here, not from the formats of the run-time library.
 !>
-!> x 10**k is a sum p + e of two reals: 10**k is held as high + low, p = x high as rounded, and the rounding error of p
-!> follows from both factors split into halves whose products are exact (Dekker 1971, Veltkamp's splitting).
+!> x 10**k is a sum p + e of two reals: 10**k is stored as high + low, p = x high as rounded, and the rounding error of
+!> p follows from both factors split into halves whose products are exact (Dekker 1971, Veltkamp's splitting).
 !>
 !> For 0 <= k <= 22 there is no low part: p + e is exact, and the decision is exact, halves included. For any other k
 !> the error is below 2**-104 p: 2**-106 p for low as rounded, as much for x low, 2**-105 p for its sum with e.
@@ -404,7 +404,9 @@ contains
       integer(int64) :: n
       character(80) :: line
       integer :: e, carried, places
+      !> Digits of the largest number in a table; decimals of a format, enough to tell a half from its neighbours.
       integer, parameter :: max_places = 12, format_decimals = 60
+      !> The text of an exact half.
       character(*), parameter :: five = '5.'//repeat('0', format_decimals)
 
       n = 0

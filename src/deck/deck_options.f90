@@ -17,7 +17,8 @@ module deck_options
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
-   !> A relative tolerance on a METHOD card is above this: with less, rounding prevents convergence.
+   !> A relative tolerance on a METHOD card is above this: less than some roundings of doubles, or in real128 of its own
+   !> kind, means nothing.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
    !> The largest relative tolerance on a METHOD card: with more, the result is no solution.
    real(wp), parameter :: max_tolerance = 1.0e-2_wp

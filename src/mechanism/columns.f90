@@ -77,6 +77,7 @@ module columns
       character(8) :: mark = ''              !< in the CSV
    end type cell_word_t
 
+   !> The words of all cells, in the order of their enumerators.
    type(cell_word_t), parameter :: cell_words(cell_none:last_cell) = [ &
       cell_word_t('NONE', 'BRAK'), cell_word_t(), cell_word_t(), cell_word_t('UNBOUNDED', 'NIEOGRAN.'), cell_word_t(), &
       cell_word_t(), cell_word_t('AT REST', 'W SPOCZYNKU', 'AT-REST'), &

@@ -224,6 +224,7 @@ contains
       real(wp), intent(in) :: numbers(3)     !< amplitude (drive's unit), frequency (rad per unit of time), phase (rad)
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
+      !> A quarter turn (rad); the phases of the derivatives 0 to 2; the sine at whole quarter turns.
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
          sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
       real(wp) :: amplitudes(0:2), u1, u2, magnitude, first, last

@@ -89,6 +89,7 @@ module mechanism
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
    integer, parameter :: method_dense = 3    !< Newton's method on all closure equations at once: the reference
+   !> The words of the methods on METHOD cards.
    character(label_length), parameter :: method_words(3) = [character(label_length) :: 'NEWTON', 'MATRIX', 'DENSE']
 
    integer, parameter :: own_predictor = -1  !< the order of the predictor that the method chooses
