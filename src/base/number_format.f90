@@ -397,7 +397,7 @@ contains
 
    !> Gives the whole number nearest to value 10**k by formats, which round the decimal value. Beyond 12 digits, for
    !> infinity and for NaN the result is huge(n). Rejected: the scale factor kP. The library of gfortran prints wrong
-   !> digits from -21P down. In a narrow field with some hundreds of P it writes beyond its own buffer.
+   !> digits from -21P down. In a narrow field with some hundreds of P the library writes beyond its own buffer.
    pure function nearest_by_format(value, k) result(n)
       real(wp), intent(in) :: value          !< a number, 0 or more, or NaN
       integer, intent(in) :: k               !< exponent of ten, of any sign

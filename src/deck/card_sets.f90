@@ -64,7 +64,7 @@ contains
 
    !> Empties a set for the next set of computations of the deck. The errors of the deck stay.
    subroutine begin_set(set, number)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: number          !< of the set in the deck, from 1
 
       if (.not. allocated(set%cards)) allocate (set%cards(64))
@@ -76,7 +76,7 @@ contains
 
    !> Makes a set ready to build its mechanism from its cards, for the first time or again.
    subroutine begin_mechanism(set, number)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: number          !< of the set in the deck, from 1
       integer :: kind
 
@@ -99,7 +99,7 @@ contains
    !> of each SLOT card, a point of the block, and its revolute pair. Errors are repeated and unknown names, and pairs
    !> that do not join two links.
    subroutine build_bodies(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       real(wp) :: unit
       integer :: defined(form_unknown:form_end)   ! members of the kind that a card of the form defines
       integer :: kind, n, k, i, slots
@@ -220,7 +220,7 @@ contains
    !> drawing. Both points of a JOINT card have its name; in the table of names the name stands for the point of the
    !> first link that is not ground. The links must have been built.
    subroutine build_point(set, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the point
       integer :: k, link
       logical :: is_first, is_ground
@@ -248,7 +248,7 @@ contains
    !> take precedence over these axes. The points must have been built. Joints that are not of the link, only one joint,
    !> and joints at one position are errors.
    subroutine find_bar(set, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the link
       integer :: ends(2), k, label, one, i
 
@@ -286,7 +286,7 @@ contains
 
    !> Finds the points that the card of a point defines: of a JOINT card both points, otherwise only the point itself.
    pure function joint_points(set, n) result(points)
-      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
+      type(card_set_t), intent(in) :: set    !< the cards, and the mechanism made of them
       integer, intent(in) :: n               !< the number of the point
       integer, allocatable :: points(:)      !< (1 or 2) their numbers
 
@@ -300,7 +300,7 @@ contains
    !> its kind has is an error; the name of a pair for a measure is an error, too. Two JOINT cards of one name have only
    !> one error: the error of their points.
    subroutine define_name(set, kind, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: kind            !< request_link, ..., request_measure
       integer, intent(in) :: n               !< number of the link, point, pair or measure
       integer :: k, other, earlier
@@ -325,7 +325,7 @@ contains
 
    !> Tells whether a set has the coordinates of a drawing, in which a blank number is as drawn.
    pure logical function has_drawing(set)
-      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
+      type(card_set_t), intent(in) :: set    !< the cards, and the mechanism made of them
 
       has_drawing = set%number_of(form_joint) > 0
    end function has_drawing
@@ -333,7 +333,7 @@ contains
    !> Finds the link, point, pair or measure that a label of a card names. An unknown name is an error, unless a card
    !> that could define the name was not understood. A blank label finds nothing, without an error.
    subroutine look_up(set, kind, k, i, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: kind            !< request_link, ..., request_measure
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: i               !< of the label: label_a to label_c
@@ -347,7 +347,7 @@ contains
    !> error, with a hint, unless a card that could define the name was not understood. A blank label finds nothing,
    !> without an error.
    subroutine look_up_kinds(set, kinds, code, k, i, kind, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: kinds(:)        !< (1 or more) request_link, ...: the first that has the name
       type(error_code_t), intent(in) :: code !< the error of an unknown name
       integer, intent(in) :: k               !< number of the card
@@ -416,7 +416,7 @@ contains
    !> Finds label A of a card in a list of words. A label that is none of the words is an error, unless the card has
    !> another error.
    subroutine match_word(set, k, words, place)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
       character(*), intent(in) :: words(:)   !< (1 or more) the words that are allowed
       integer, intent(out) :: place          !< index of the word in `words`; 0: none
@@ -434,7 +434,7 @@ contains
 
    !> Adds a remark about a field of a card.
    subroutine add_card_remark(set, kind, k, field, value)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: kind            !< remark_title_long, ...
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: field           !< card_name, label_a, ..., real_3
@@ -448,7 +448,7 @@ contains
 
    !> Adds an error about a field of a card.
    subroutine add_card_error(set, code, k, field, more)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(error_code_t), intent(in) :: code !< the number and the sentence of the error
       integer, intent(in) :: k               !< number of the card
       integer, intent(in) :: field           !< card_name, label_a, ..., real_3

@@ -23,7 +23,7 @@ contains
    !> Builds the drives of a mechanism from the cards. Links, points and pairs must have been built. Errors are a drive
    !> of a coordinate that cannot be driven, an ADD or RISE card without a drive, and wrong tables and rises.
    subroutine build_drives(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer :: k
 
       allocate (set%mechanism%drives(set%number_of(form_drive)))
@@ -104,7 +104,7 @@ contains
    !> Builds the drive of a DRIVE card: kind, coordinate and polynomial. Errors are an unknown kind or name, a rate in
    !> revolutions per minute in another unit of time, and a coordinate that cannot move.
    subroutine build_drive(set, k)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
       real(wp) :: minute
       integer :: kind, links(3), label, before
@@ -150,7 +150,7 @@ contains
    !> Builds the term of an ADD or RISE card, or one row of its table. An unknown kind, a blank card, a rise without a
    !> duration, a table of one row and rows that are not in order of time are errors.
    subroutine build_term(set, k)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card
       integer :: kind
 
@@ -195,7 +195,7 @@ contains
    !> Errors are several drives with a rate or none, a drive with a rate that is no angle or has terms or an
    !> acceleration, and turns that do not change the time.
    subroutine set_turns(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer :: k, card
 
       card = findloc(set%cards(:set%count)%form, form_time, dim=1)
@@ -235,7 +235,7 @@ contains
    !> exist at all instants, with its first two derivatives, is an error; a power near the end of the range of reals is
    !> an error, too.
    subroutine check_terms(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       real(wp) :: first, last, times(2)
       !> The largest decimal logarithm of a power and its derivatives: less than half of the range of real64.
       real(wp), parameter :: max_power_logarithm = 120.0_wp
@@ -292,7 +292,7 @@ contains
 
    !> Checks the cylinder of a drive, if the drive moves one: a length of 0 or less at the first instant is an error.
    subroutine check_cylinder(set, k)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the DRIVE card
       real(wp) :: f(3)
 

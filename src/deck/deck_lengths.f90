@@ -24,7 +24,7 @@ contains
    !> - a hole that moves after a length has used it;
    !> - lengths that do not meet, or that later lengths change.
    subroutine build_lengths(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(length_t) :: lengths(set%number_of(form_length))
       type(reach_t) :: reached(set%number_of(form_length))
       integer, allocatable :: card_of(:), order(:)     ! (lengths) the card of each; their order
@@ -125,7 +125,7 @@ contains
    !> Reads a LENGTH card: its points on one body, and its length. An unknown name, a blank or negative length, and
    !> points that are not on exactly one common body, or cannot be moved, are errors.
    subroutine read_length(set, k, one)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: k            !< number of the card in the set
       type(length_t), intent(inout) :: one   !< gets its points, its link and its length
       integer :: ends(2), link, i, label, common

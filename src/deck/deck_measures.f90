@@ -18,7 +18,7 @@ contains
    !> Builds the measures of a mechanism in the order of their cards. Links, points and pairs must have been built.
    !> Errors are unknown names, sums of a length and an angle, and sums that contain themselves.
    subroutine build_measures(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 not begun, 1 begun, 2 done
       integer :: n, i
 
@@ -119,7 +119,7 @@ contains
    !> Finds the two lines or links of an ANGLE card. An unknown name, a name of both a line and a link, and one name
    !> twice are errors.
    subroutine find_sides(set, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the measure
       type(subject_t) :: sides(2)
       integer :: i, k, link
@@ -151,7 +151,7 @@ contains
    !> Finds the summands of a SUM card, one or two pairs or measures, with their factors: 1 if blank. An unknown name,
    !> and a factor without a summand, are errors.
    subroutine find_summands(set, n)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: n               !< number of the measure
       type(subject_t) :: summands(2)
       integer :: i, k
@@ -187,7 +187,7 @@ contains
    !> Checks the measures of a set without errors: a measure of links of several independent mechanisms is an error. A
    !> link that nothing uses must have become ground before.
    subroutine check_measures(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, allocatable :: part(:), parts(:)
       integer :: n, k
 

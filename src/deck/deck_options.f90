@@ -46,7 +46,7 @@ contains
    !> Sets the options and instants of a mechanism from its cards. Repeated cards, unknown words and values out of range
    !> are errors.
    subroutine build_options(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       real(wp) :: instants(3*set%number_of(form_at))
       integer :: first(size(card_forms)), k, i, n, chosen
 
@@ -142,7 +142,7 @@ contains
    !> Without a PRINT or COLUMN card, all links that are not ground and all measures are printed. The listing of a
    !> drawing then has its points as well, and only the angle of links without axes of their own.
    subroutine build_requests(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of one form
       type(request_t), allocatable :: requests(:)
       type(column_request_t), allocatable :: columns(:)
@@ -511,7 +511,7 @@ contains
    !> built. Errors are another method than NEWTON, an unknown or ground link, a blank time, and the link and time of an
    !> earlier card, which may be meant for the next change point.
    subroutine build_branches(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(branch_request_t) :: requests(set%number_of(form_branch))
       integer :: card_of(set%number_of(form_branch)), k, n, i
 
@@ -540,7 +540,7 @@ contains
    !> Checks the poles and curves of a set without errors. Two links without relative motion, or of two independent
    !> mechanisms, are an error. A link that nothing uses must have become ground before.
    subroutine check_centres(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(request_t) :: one
       integer, allocatable :: part(:)
       integer, allocatable :: links(:)

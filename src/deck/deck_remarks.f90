@@ -59,7 +59,7 @@ contains
    !> Adds a remark on each link without a pair or a drive, which becomes ground, and on each point without a pair,
    !> drive, measure, length or request. If no moving link is left, this is an error.
    subroutine check_unused(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
       integer :: i
 
@@ -94,7 +94,7 @@ contains
    !> whole number or half of one. Numbers of ADD cards are not read from drawings, and do not count. If the set is in
    !> degrees, there is no remark.
    subroutine check_angles(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(parameter_t) :: number
       type(unit_t) :: unit
       integer :: k, i
@@ -118,7 +118,7 @@ contains
    !> Adds a remark on all drives if none moves within TIME, and a remark on the first drive that makes a turn or more
    !> in one step of TIME. If VARY cards change a drive or TIME, all drives may rest. A set without TIME has no remarks.
    subroutine check_drives(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       !> A part of one turn that counts as one turn: one turn but for roundings.
       real(wp), parameter :: about_one = 1.0_wp - 1.0e3_wp*epsilon(1.0_wp)
       real(wp) :: step, rate
@@ -208,7 +208,7 @@ contains
    !> Builds the echo of a set without errors: a line for each card except TITLE, as it was understood, with the values
    !> in use, and a line for each default that no card replaces.
    subroutine build_echo(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer :: k, n
 
       allocate (set%mechanism%echo(set%count + 5))
@@ -321,7 +321,7 @@ contains
    !> the drawing, on each guide whose alpha counts from turned axes, unless these are along a bar, and on each cylinder
    !> that is drawn outside its stroke. The drawing before lengths is compared. Without JOINT cards there is no remark.
    subroutine check_drawing(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(mechanism_t) :: m                        ! as it is drawn
       real(wp) :: length, closure_error, turn
       character(:), allocatable :: text

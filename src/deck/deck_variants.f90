@@ -65,7 +65,7 @@ contains
    !> A JOINT card has tolerances of the hole of each of its links, of the hole of one link, or of both holes together.
    !> Errors are a card below no card with numbers, a number that takes no tolerance, and a tolerance below zero.
    subroutine build_tolerances(set)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(tolerance_t) :: list(6*set%number_of(form_toler))
       type(parameter_t) :: number
       integer, allocatable :: holes(:)              ! the points of a JOINT card whose holes have tolerances
@@ -175,7 +175,7 @@ contains
 
    !> Tells whether a TOLER card is a second TOLER card for one card. For a JOINT card each link may have a TOLER card.
    pure logical function is_second(set, k, above)
-      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
+      type(card_set_t), intent(in) :: set    !< the cards, and the mechanism made of them
       integer, intent(in) :: k            !< number of the TOLER card
       integer, intent(in) :: above        !< number of the card above it
       integer :: i
@@ -192,7 +192,7 @@ contains
 
    !> Finds the address of the number that a real of a card gives; the kind is 0 if no number of a mechanism is there.
    pure function parameter_on_card(set, k, i) result(number)
-      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
+      type(card_set_t), intent(in) :: set    !< the cards, and the mechanism made of them
       integer, intent(in) :: k               !< number of the card, of any form
       integer, intent(in) :: i               !< number of the real, 1 to 3
       type(parameter_t) :: number
@@ -215,7 +215,7 @@ contains
    !> Errors are wrong VARY cards, tied numbers with different counts, and too many variants. If the set has an error,
    !> `variation` is of no use.
    subroutine build_variation(set, variation)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       type(variation_t), intent(out) :: variation   !< the variants; empty without VARY cards
       type(varied_t) :: one
       integer(int64) :: total
@@ -319,7 +319,7 @@ contains
    !> Reads the values of a number from its VARY card: a list, or the ends of a range and a count. If the card is wrong,
    !> this is an error, and the count of the number stays 0.
    subroutine read_values(set, i, one)
-      type(card_set_t), intent(inout) :: set !< its cards, and the mechanism made of them
+      type(card_set_t), intent(inout) :: set !< the cards, and the mechanism made of them
       integer, intent(in) :: i               !< number of the VARY card
       type(varied_t), intent(inout) :: one   !< gets `list`, or `first` and `last`, and `count`
       type(error_code_t) :: error
@@ -359,7 +359,7 @@ contains
    !> - if TIME counts turns, the last instant depends on the rate;
    !> - whether a cylinder begins with a length above 0 depends on the law of its drive.
    pure logical function stands_alone(set, form)
-      type(card_set_t), intent(in) :: set    !< its cards, and the mechanism made of them
+      type(card_set_t), intent(in) :: set    !< the cards, and the mechanism made of them
       integer, intent(in) :: form            !< of the card: form_ground, ...
 
       select case (form)

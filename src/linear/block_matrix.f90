@@ -234,7 +234,7 @@ contains
       real(wp), intent(in) :: a(*)           !< (4) factors of the factored matrix, by columns
       real(wp), intent(in) :: change         !< bound of the change since the last call (maximum norm)
       integer, intent(in) :: pivots(*)       !< (2) as `solve_first` left them
-      type(nearby_t), intent(inout) :: near  !< gets factors, inverse, distance; 0: factor it itself
+      type(nearby_t), intent(inout) :: near  !< gets its components but `a`; distance 0: not in use
 
       if (shape%n /= 2 .or. shape%rows /= 2) return
       near%factors = a(:4)

@@ -47,7 +47,7 @@ contains
    end subroutine complete_from_drawing
 
    !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (eq. 9), in
-   !> the deck's unit of length; exactly 0 if it is only rounding.
+   !> the deck's unit of length; exactly 0 if the difference is only rounding.
    pure real(wp) function drawn_closure_error(m, pair) result(closure_error)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair       !< of `m`
@@ -58,7 +58,8 @@ contains
       closure_error = without_rounding(closure_error, size_of_pair(m, pair) + abs(pair%offset))
    end function drawn_closure_error
 
-   !> Finds the value (length or rad) of the coordinate of a drive in the drawing; exactly 0 if it is only rounding.
+   !> Finds the value (length or rad) of the coordinate of a drive in the drawing; exactly 0 if the value is only
+   !> rounding.
    pure real(wp) function drawn_drive(m, drive) result(value)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: drive     !< of `m`

@@ -5,9 +5,10 @@
 !> A table is the natural cubic spline through its rows. The laws of rises are laws of cams (Norton, Cam Design and
 !> Manufacturing Handbook, ch. 2 and 3). At a jump of the acceleration the value after the jump counts.
 !>
-!> `bounds_of` encloses value, rate and acceleration over an interval of time. The bounds are true: they are widened
-!> by the rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise they are its
-!> extremes; for a sum they are the sums of these bounds, which may lie outside its extremes.
+!> `bounds_of` encloses value, rate and acceleration over an interval of time. The bounds are true: they include the
+!> rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise the bounds are the
+!> extremes of the law; for a sum they are the sums of the bounds of all terms, which may lie outside the extremes of
+!> the sum.
 !>
 !> `growing_sizes` bounds the sizes of the numbers that a law adds up. Its value and its rates may be small differences
 !> of large numbers, and have then so many fewer known digits.
@@ -139,7 +140,7 @@ contains
 
    !> Widens bounds so that they enclose a value and its derivatives, with their rounding errors.
    pure subroutine widen(bounds, values, magnitudes)
-      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
+      type(bounds_t), intent(inout) :: bounds   !< are widened
       real(wp), intent(in) :: values(0:2)    !< value and derivatives, in the units of the bounds
       real(wp), intent(in) :: magnitudes(0:2)   !< of each, the sum of the absolute values of its terms, in its unit
 
@@ -377,7 +378,7 @@ contains
    !> Widens bounds so that they enclose a piece of a spline between two times: its values at both ends, and at the
    !> times at which its second or first derivative is zero.
    pure subroutine widen_by_piece(bounds, spline, i, t1, t2)
-      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
+      type(bounds_t), intent(inout) :: bounds   !< are widened
       type(spline_t), intent(in) :: spline   !< the table
       integer, intent(in) :: i               !< number of the piece: between the knots i and i + 1
       real(wp), intent(in) :: t1, t2         !< times in their order
@@ -514,7 +515,7 @@ contains
    !> Widens bounds so that they enclose a rise at a part of its duration. At its steepest, a rounding of `part` changes
    !> the second derivative by 60 roundings; in a dwell zeros are exact.
    pure subroutine widen_by_rise(bounds, term, part, at)
-      type(bounds_t), intent(inout) :: bounds   !< enclose them afterwards
+      type(bounds_t), intent(inout) :: bounds   !< are widened
       type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: part           !< the part of the duration
       real(wp), intent(in) :: at             !< a part of the duration in the piece whose acceleration is taken

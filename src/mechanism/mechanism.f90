@@ -1,5 +1,5 @@
-!> A planar mechanism and the requests about it, as plain data: links, points, pairs, drives. `deck` builds it, all
-!> others read it. Lengths and times are in the deck's units, angles in radians.
+!> A planar mechanism and the requests about its motion, as plain data: links, points, pairs, drives. The folder deck/
+!> builds a mechanism; all other modules read it. Lengths and times are in the deck's units, angles in rad.
 module mechanism
    use kinds, only: wp, label_length, title_length
    use splines, only: spline_t
@@ -81,7 +81,7 @@ module mechanism
    integer, parameter :: parameter_pair = 4     !< alpha, h or beta of prismatic pair `subject`
    integer, parameter :: parameter_drive = 5    !< of drive `subject`, or of its term `term`
    integer, parameter :: parameter_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
-   integer, parameter :: parameter_time = 7     !< T0 or T1 of TIME
+   integer, parameter :: parameter_time = 7     !< T0, or T1 or the number of turns, of TIME
    integer, parameter :: parameter_length = 8   !< of the length `subject`, in the order in which lengths are applied
    integer, parameter :: parameter_hole = 9     !< x or y, in the drawing, of the hole of point `subject` of a JOINT
    integer, parameter :: parameter_stroke = 10   !< least or greatest length of cylinder `subject`, a pair
@@ -100,8 +100,8 @@ module mechanism
       enumerator :: remark_title_letters        !< a title has letters that are not ASCII
       enumerator :: remark_touching             !< two numbers touch
       enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
-      enumerator :: remark_point_unused         !< no pair, drive, measure or PRINT card uses a point
-      enumerator :: remark_radians              !< an angle in radians looks like one in degrees
+      enumerator :: remark_point_unused         !< no pair, drive, measure, LENGTH or PRINT card uses a point
+      enumerator :: remark_radians              !< an angle in radians looks like an angle in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
       enumerator :: remark_stroke               !< a cylinder is drawn beyond its stroke
@@ -196,7 +196,7 @@ module mechanism
       real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0 (length or rad), rate, acceleration
       type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
       logical :: drawn = .false.             !< the drawing gives its value at t = 0, not its card
-      logical :: turns = .false.             !< its card gives the rate in turns a minute
+      logical :: turns = .false.             !< its card gives the rate in revolutions per minute
    end type drive_t
 
    !> A request about a link, point, pair or measure: a row of the tables, its extremes, or both. The motion of a link
@@ -219,7 +219,7 @@ module mechanism
    !> The request of a COLUMN card: one number of a row at every instant.
    type :: column_request_t
       integer :: request = 0                 !< the number of the row among the requests of the set
-      integer :: at(2) = 0                   !< which number of the row: coordinate (1 to 3), derivative (0 to 2)
+      integer :: at(2) = 0                   !< which number: coordinate (1 to 3); derivative or axes (0 to 2)
    end type column_request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
@@ -309,7 +309,7 @@ contains
       end if
    end function instant
 
-   !> Finds the times of the earliest and the latest instant of a set. Without instants they are huge and -huge.
+   !> Finds the times of the earliest and the latest instant of a set. Without instants the times are huge and -huge.
    pure subroutine find_instants(settings, first, last)
       class(settings_t), intent(in) :: settings   !< of a set or of a part of it
       real(wp), intent(out) :: first, last   !< earliest and latest time, in the deck's unit

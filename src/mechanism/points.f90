@@ -47,8 +47,7 @@ module points
 
 contains
 
-   !> Tells whether a request has a row in the CSV at an instant: the request is printed then, or a COLUMN card names
-   !> it.
+   !> Tells whether a request has a row in the CSV at an instant: by its interval, or at all instants by a COLUMN card.
    pure logical function is_due(settings, request, k)
       class(settings_t), intent(in) :: settings   !< of the set
       type(request_t), intent(in) :: request !< of the set
@@ -352,7 +351,8 @@ contains
    end subroutine find_measure
 
    !> Finds the largest factor by which relative roundings of the motion grow in the measures, poles and curves of a
-   !> mechanism, all in units of the characteristic length and rate. For a centre at infinity or at rest it is huge.
+   !> mechanism, all in units of the characteristic length and rate. The factor is huge for a centre at infinity or at
+   !> rest.
    pure real(wp) function amplification_in_rows(m, q, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known

@@ -26,7 +26,7 @@ contains
    end function separation
 
    !> Finds the largest differences (3) of two motions: of x and y in characteristic lengths, of angles in rad without
-   !> whole turns, and of velocities in characteristic lengths and rates. They are huge if a position is not known.
+   !> whole turns, and of velocities in characteristic lengths and rates. All are huge if a position is not known.
    !> Velocities that are not unique count as equal.
    pure function motions_apart(m, first, last) result(apart)
       type(mechanism_t), intent(in) :: m
