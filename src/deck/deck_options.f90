@@ -32,7 +32,7 @@ module deck_options
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
    !> The forms of cards of requests, in the order in which they are read.
-   integer, parameter :: request_forms(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
+   integer, parameter :: read_order(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
    !> The words of PRINT and EXTREMES: 0 for everything, then the kinds request_link to request_measure.
    character(*), parameter :: print_words(0:request_measure) = &
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
@@ -172,11 +172,11 @@ contains
          call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
 
-      do i = 1, size(request_forms)
+      do i = 1, size(read_order)
          seen = name_table_t()
          do k = 1, set%count
-            if (set%cards(k)%form /= request_forms(i) .or. .not. set%cards(k)%valid) cycle
-            select case (request_forms(i))
+            if (set%cards(k)%form /= read_order(i) .or. .not. set%cards(k)%valid) cycle
+            select case (read_order(i))
             case (form_print)
                call read_subjects(k, request_t(every=every(k)))
             case (form_column)
@@ -193,8 +193,7 @@ contains
 
             case default
                n = n + 1
-               requests(n) = request_t(merge(request_pole, request_curve, request_forms(i) == form_pole), &
-                  every=every(k))
+               requests(n) = request_t(merge(request_pole, request_curve, read_order(i) == form_pole), every=every(k))
                associate (one => requests(n))
                   if (one%kind == request_pole) then
                      call look_up(set, request_link, k, label_a, one%second)

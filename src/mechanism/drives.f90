@@ -7,8 +7,7 @@
 !>
 !> `bounds_of` encloses value, rate and acceleration over an interval of time. The bounds are true: they include the
 !> rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise the bounds are the
-!> extremes of the law; for a sum they are the sums of the bounds of all terms, which may lie outside the extremes of
-!> the sum.
+!> extremes of the law; for a sum they are the sums of the bounds of all terms, wider than its extremes.
 !>
 !> `growing_sizes` bounds the sizes of the numbers that a law adds up. Its value and its rates may be small differences
 !> of large numbers, and have then so many fewer known digits.
@@ -28,8 +27,7 @@ module drives
 
    !> An interval for each derivative of a law; the default has no value in it.
    type :: bounds_t
-      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge and huge:
-      !> there are no bounds.
+      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the unit of time. -huge, huge: no bounds.
       real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
    end type bounds_t
 
@@ -38,20 +36,16 @@ module drives
    !> 256 roundings times a normal deviate. Their difference changes by 362 times such a deviate, which exceeds 2048
    !> once in a hundred million times. In real128 instants that are doubles have the roundings of doubles.
    real(wp), parameter :: joint_tolerance = 2048.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
-   !> Bound of the rounding error of a law, relative to the sum of the absolute values of its terms: some ten
-   !> operations.
+   !> Rounding error of a law at most, relative to the sum of the absolute values of its terms: some ten operations.
    real(wp), parameter :: law_rounding = 16.0_wp*epsilon(1.0_wp)
-   !> Bounds of the derivatives 0 to 3 of a rise with the lift 1 and the duration 1: 2 pi of the cycloid is below 6.3,
-   !> and 60 is the third derivative of the 3-4-5 polynomial.
+   !> Bounds of the derivatives 0 to 3 of any rise with lift 1 and duration 1: 6.3 by the cycloid, 60 by 3-4-5.
    real(wp), parameter :: rise_most(0:3) = [1.0_wp, 2.0_wp, 6.3_wp, 60.0_wp]
-   !> A joint may be so far from the instant at which a drive stops or starts, as a part of the times: twice
-   !> `joint_tolerance`.
+   !> A joint may be so far from the start or stop of a drive, as a part of the times: twice `joint_tolerance`.
    real(wp), parameter :: rest_part = 4096.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
 
-   !> Computes value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and the deck's
-   !> unit of time.
+   !> Computes value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and unit of time.
    pure function drive_motion(law, t) result(f)
       type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t              !< time
@@ -181,8 +175,7 @@ contains
       end do
    end function drive_rate
 
-   !> Finds the times (any number, in no order) at which some derivative of a law jumps: the knots of its tables and the
-   !> joints of its rises.
+   !> Finds the times (any number, unordered) at which a derivative of a law jumps: knots of tables, joints of rises.
    pure function joints_of(drive) result(times)
       type(drive_t), intent(in) :: drive     !< with its law
       real(wp), allocatable :: times(:)
@@ -277,8 +270,7 @@ contains
       end if
    end function monomial
 
-   !> Computes r1 t**r2 and its first two derivatives (3) at a time, in the drive's unit and the unit of time. They must
-   !> exist there: `exists`.
+   !> Computes r1 t**r2 and its first two derivatives (3), if they exist at a time, in the drive's unit and that of time.
    pure function power_motion(numbers, t) result(f)
       real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: t              !< time
@@ -359,8 +351,7 @@ contains
       end associate
    end function table_rate
 
-   !> Finds the sizes (3) of value, rate and acceleration of a table at the times -t and t, for `growing_sizes`, from
-   !> the differences of its rows.
+   !> Finds the sizes (3) of value, rate and acceleration of a table at the times -t and t, for `growing_sizes`.
    pure function table_sizes(spline, t) result(sizes)
       type(spline_t), intent(in) :: spline   !< the table
       real(wp), intent(in) :: t              !< time
@@ -410,8 +401,7 @@ contains
       end do
    end subroutine widen_by_piece
 
-   !> Finds how far before a joint a rise already has the acceleration after the joint, as a part of the duration; 0 if
-   !> the acceleration is continuous.
+   !> Finds how far before a joint a rise has the acceleration after the joint, as a part of the duration; 0: no jump.
    pure real(wp) function joint_width(term) result(width)
       type(term_t), intent(in) :: term       !< a rise
 
@@ -473,8 +463,7 @@ contains
       rate = abs(term%r(3)*s(2))/term%r(2)
    end function rise_rate
 
-   !> Finds the sizes (3) of value, rate and acceleration of a rise, for `growing_sizes`, at any time: after its end the
-   !> time changes nothing.
+   !> Finds the sizes (3) of value, rate and acceleration of a rise, for `growing_sizes`, at any time.
    pure function rise_sizes(numbers) result(sizes)
       real(wp), intent(in) :: numbers(3)     !< |start|, duration (time), |lift| (drive's unit)
       real(wp) :: sizes(3)
@@ -484,8 +473,7 @@ contains
    end function rise_sizes
 
    !> Finds true bounds of a rise and its first two derivatives between two times: from its values at both ends, and at
-   !> all points in between at which any law has an extreme of a derivative. At a joint in the interval the acceleration
-   !> may have two values.
+   !> all points in between at which any law has an extreme of a derivative; at a joint with both accelerations.
    pure function rise_bounds(term, from, to, is_instant) result(b)
       type(term_t), intent(in) :: term       !< a rise
       real(wp), intent(in) :: from, to       !< times in their order
@@ -572,8 +560,7 @@ contains
    end function sizes_at
 
    !> Tells whether a drive does not move between two times, by the bounds of its rate. For two equal times: whether the
-   !> drive does not move just after. A time near a joint counts as after the joint at the beginning of the interval,
-   !> and as before the joint at its end.
+   !> drive does not move just after. Near a joint the interval begins after the joint, or ends before it.
    elemental logical function is_at_rest(law, t1, t2)
       type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t1, t2         !< times in either order
