@@ -45,7 +45,7 @@ module drives
 
 contains
 
-   !> Computes value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and unit of time.
+   !> Computes value, rate and acceleration (3) of a law at a time, in the drive's unit (length, rad) and unit of time.
    pure function drive_motion(law, t) result(f)
       type(drive_t), intent(in) :: law       !< the drive that has the law
       real(wp), intent(in) :: t              !< time
@@ -270,7 +270,7 @@ contains
       end if
    end function monomial
 
-   !> Computes r1 t**r2 and its first two derivatives (3), if they exist at a time, in the drive's unit and that of time.
+   !> Computes r1 t**r2 and its first two derivatives (3), if they exist at a time, in the drive's and time's units.
    pure function power_motion(numbers, t) result(f)
       real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: t              !< time
