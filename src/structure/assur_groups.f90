@@ -1,6 +1,6 @@
-!> Which coordinate stands in which closure equation, all coordinates of all moving links taken, and the Assur groups
-!> that follow: the least sets of links that can be found one after another, with the drives that move them. Each
-!> coordinate is matched with a closure equation; a link waits for all links that stand in the equations of its
+!> The incidence of the closure equations with all coordinates of all moving links, and the Assur groups that follow:
+!> the least sets of links that can be found one after another, with the drives that move them. Each coordinate is
+!> matched with a closure equation; a link waits for all links whose coordinates are in the equations of its
 !> coordinates, and links that wait for one another are a group.
 !>
 !> Unknowns: x, y, phi of moving link k are 3 k' - 2, 3 k' - 1, 3 k', k' its number among the moving links.
@@ -19,29 +19,31 @@ module assur_groups
    private
    public :: closure_incidence_t, new_closure, group_t, groups_of
 
-   !> The equations are two of each pair, in their order, and then one of each drive.
+   !> The closure equations: two of each pair, in the order of the pairs, and then one of each drive.
    type :: closure_incidence_t
-      type(incidence_t) :: incidence
-      integer, allocatable :: link_of(:)             !< (unknowns)
+      type(incidence_t) :: incidence                 !< which coordinate is in which equation
+      integer, allocatable :: link_of(:)             !< (unknowns) the number of the link whose coordinate it is
    end type closure_incidence_t
 
-   !> A component of a unit vector below this is zero.
+   !> A component of a unit vector below this is zero: sine and cosine of a sum of two angles are rounded by so much.
    real(wp), parameter :: zero_component = 8.0_wp*epsilon(1.0_wp)
    !> (2, axes) Unit vectors along x and along y.
    real(wp), parameter :: axis_directions(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
 
+   !> An Assur group, or a drive's link.
    type :: group_t
-      integer, allocatable :: links(:)    !< numbers of its links
+      integer, allocatable :: links(:)    !< numbers of its links, increasing
       logical :: driven = .false.         !< a drive is part of it
    end type group_t
 
 contains
 
-   !> Makes the closure equations of a mechanism: time and memory are proportional to links, pairs and drives.
+   !> Finds which coordinate is in which closure equation of a mechanism: (7) to (10) of its pairs, and one of each
+   !> drive. Time and memory are proportional to links, pairs and drives.
    function new_closure(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(closure_incidence_t) :: c
-      logical, parameter :: angle(3) = [.false., .false., .true.]
+      logical, parameter :: angle(3) = [.false., .false., .true.]   !< of x, y, phi: phi only
       integer :: moving(size(m%links)), n, i, k, axis    ! (links) number among the moving links, 0 for ground links
       integer, allocatable :: links(:)
 
@@ -98,7 +100,7 @@ contains
 
    contains
 
-      !> Notes coordinates of a link in the equation at hand. Coordinates of the ground are no unknowns.
+      !> Adds coordinates of a link to the unfinished equation. Coordinates of the ground are no unknowns.
       subroutine note(link, in)
          integer, intent(in) :: link         !< its number among all links
          logical, intent(in) :: in(3)        !< which of x, y, phi are in the equation
@@ -111,15 +113,15 @@ contains
          end do
       end subroutine note
 
-      !> Notes the coordinates in the component of a point along a fixed direction.
+      !> Adds the coordinates in the component of a point along a fixed direction to the unfinished equation.
       subroutine record_component(point, direction)
-         integer, intent(in) :: point        !< its number
-         real(wp), intent(in) :: direction(2)   !< x and y; a zero tells that the coordinate is not in the equation
+         integer, intent(in) :: point        !< the number of the point
+         real(wp), intent(in) :: direction(2)   !< a unit vector; x is not in the equation if its x is 0, likewise y
 
          call note(m%points(point)%link, [abs(direction) > zero_component, any(abs(m%points(point)%offset) > 0.0_wp)])
       end subroutine record_component
 
-      !> Notes the coordinates in the projection of a prismatic pair.
+      !> Adds the coordinates in the projection of P - Q of a prismatic pair to the unfinished equation.
       subroutine record_projection(i, across)
          integer, intent(in) :: i            !< the number of the pair
          logical, intent(in) :: across       !< on the normal of its guide; otherwise along the guide
@@ -137,7 +139,7 @@ contains
          end associate
       end subroutine record_projection
 
-      !> Completes the equation at hand.
+      !> Completes the unfinished equation.
       subroutine close_equation()
 
          k = k + 1
@@ -146,10 +148,10 @@ contains
    end function new_closure
 
    !> Finds the Assur groups of a mechanism in solving order. The links of the part with too many equations are one
-   !> group.
+   !> group. Without moving links there is no group.
    function groups_of(m, closure) result(groups)
       type(mechanism_t), intent(in) :: m
-      type(closure_incidence_t), intent(in) :: closure   !< of `m`; each unknown can have an equation in it
+      type(closure_incidence_t), intent(in) :: closure   !< of `m`; some matching gives each unknown an equation
       type(group_t), allocatable :: groups(:)
       logical :: over(closure%incidence%equations)
       type(incidence_t) :: waits
@@ -181,7 +183,8 @@ contains
 
    contains
 
-      !> Numbers the components of links in the order of the groups (components); 0 for ground links.
+      !> Numbers the groups: for each set of links that wait for one another (sets in the order of `first`) the number
+      !> of its group, 0 for ground links. Groups are ordered by depth, then by their first link in the deck.
       function numbers() result(order)
          integer, allocatable :: order(:)
          type(sorted_t) :: by_depth
@@ -210,12 +213,12 @@ contains
       end function numbers
    end function groups_of
 
-   !> Finds the links for which each link waits; a ground link waits for none. The links of the part with too many
-   !> equations wait for one another in a ring.
+   !> Finds the links for which each link waits, as the unknowns of its equation; a ground link waits for itself only.
+   !> The links of the part with too many equations wait for one another in a ring.
    function waiting(m, closure, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
-      type(closure_incidence_t), intent(in) :: closure
-      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation that is matched with each
+      type(closure_incidence_t), intent(in) :: closure   !< of `m`
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation that is matched with each, never 0
       logical, intent(in) :: over(:)         !< (equations) it is in the part with too many equations
       type(incidence_t) :: w
       logical :: tied(size(m%links))
@@ -249,7 +252,7 @@ contains
 
    contains
 
-      !> Makes the link at hand wait for another link.
+      !> Makes link `link` wait for another link, or for itself.
       subroutine wait_for(other)
          integer, intent(in) :: other        !< the number of that link
 

@@ -1,12 +1,12 @@
-!> What the numbers of a mechanism's cards make of its blocks. A variant, or a mechanism with one number off, has the
-!> same blocks with other numbers: `evaluate_geometry` fills these straight from it.
+!> The numbers that the cards of a mechanism make of its blocks. A variant, or a mechanism with one changed number, has
+!> equal blocks with other numbers: `evaluate_geometry` fills these straight from the mechanism.
 !>
 !> Each vector loop is in its own lengths: its rows, and the slides that its block solves for, in units of its largest
 !> body vector. A residual, closure error or correction is then small or large for that loop and not for the largest
 !> link of the mechanism. Units are powers of two: no digit changes.
 !>
-!> The known part of a block may be much larger than its own body vectors. Its rounding cannot be corrected: `coarse` is
-!> how much larger it is, and levels of rounding are that much higher.
+!> The part of a loop that earlier blocks give may be much larger than the body vectors of the block. The rounding of
+!> the given part cannot be corrected: `coarse` is the ratio of the two, and levels of rounding are higher by it.
 module block_numbers
    use kinds, only: wp
    use plane_vectors, only: vector_t, length_of
@@ -20,16 +20,18 @@ module block_numbers
    private
    public :: evaluate_geometry, fill_numbers, find_units, lipschitz_of
 
-   !> A loop below this part of the largest loop of its block has a unit of its own.
+   !> A loop below this part of the largest loop of its block has a unit of its own. With a unit sixteen times too large
+   !> a loop loses little more than one digit.
    real(wp), parameter :: much_smaller = 0.0625_wp
-   !> The least unit of a loop with slides and no own body vector, in the unit of the mechanism: where only slides
-   !> balance, these may be long though the known part is short.
+   !> The least unit of a loop with slides and no own body vector, in the unit of the mechanism: if only slides balance
+   !> one another, they may be long although the given part is short.
    real(wp), parameter :: least_slide_unit = 0.0625_wp
 
 contains
 
-   !> Puts the numbers of a mechanism into the geometry of its blocks. The structure stays as it is. If the numbers do
-   !> not fit, `x` leaves out the unknowns and body vectors that `b` leaves out.
+   !> Fills the geometry of blocks from the numbers of a mechanism; tolerance, chain and cylinders stay. If the numbers
+   !> do not fit, `x` leaves out the unknowns and body vectors that `b` leaves out. If `b` is not solvable, they do not
+   !> fit, and only span, closing and equations are set.
    subroutine evaluate_geometry(m, b, x, fits)
       type(mechanism_t), intent(in) :: m     !< with the links, points, pairs and drives of which `b` was made
       type(blocks_t), intent(in) :: b
@@ -51,10 +53,11 @@ contains
       call find_units(b, x)
    end subroutine evaluate_geometry
 
-   !> Fills a geometry from the numbers of its equations, in their unit of length, and allocates its lists if needed.
+   !> Fills units, rows, loops, body vectors and slides of a geometry from the numbers of its equations, all in their
+   !> unit of length, and allocates these lists if needed.
    pure subroutine fill_numbers(b, x)
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(inout) :: x
+      type(blocks_t), intent(in) :: b        !< solvable
+      type(geometry_t), intent(inout) :: x   !< with the numbers of the equations
       integer :: i, m, k
 
       if (.not. allocated(x%unit)) allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), &
@@ -90,11 +93,10 @@ contains
       end associate
    end subroutine fill_numbers
 
-   !> Divides the numbers of the rows of all blocks, and those of the slides, by the units of their loops. Before that
-   !> they have one unit of length.
+   !> Finds the units of all loops and slides, and divides the numbers of loops, rows and slides by these units.
    subroutine find_units(b, x)
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(inout) :: x
+      type(blocks_t), intent(in) :: b        !< solvable
+      type(geometry_t), intent(inout) :: x   !< by `fill_numbers`, in one unit of length; then each loop in its own
       logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
       real(wp) :: longest
       integer :: i, m, k
@@ -106,8 +108,8 @@ contains
                call measure(b%loops(m), x%loops(m))
             end do
 
-            ! Loops that are not much smaller than the largest get its unit: the weights of their rows are then the same
-            ! where equations are too many. What is known is from now on in the loop's unit.
+            ! Loops that are not much smaller than the largest loop get its unit: their rows then have equal weights if
+            ! equations are too many. `coarse` was the size of the given part; from here on it is in the loop's unit.
             associate (g => x%loops(first:last), has_lengths => b%loops(first:last)%kind /= loop_angles)
                longest = maxval(g%unit, mask=has_lengths)
                where (has_lengths .and. g%unit >= much_smaller*longest) g%unit = longest
@@ -134,12 +136,13 @@ contains
 
    contains
 
-      !> Finds the unit of a loop: its largest own body vector. A slide is as long as the known part lets it be. A
-      !> projection that turns with an orientation of the block turns the whole loop. Slides that nothing else balances
-      !> may be long where the known part is short, as the way to a point near the origin.
+      !> Finds the unit of a loop, the largest power of two not above its largest own body vector, and in loop%coarse
+      !> the size of its given part, in the unit of the equations. The given part counts for the unit too if the loop
+      !> has slides of the block, which are as long as the given part lets them be, or a direction that an angle of the
+      !> block turns. If only slides balance one another, the unit is not below `least_slide_unit`.
       subroutine measure(cards, loop)
-         type(block_loop_t), intent(in) :: cards
-         type(loop_numbers_t), intent(inout) :: loop
+         type(block_loop_t), intent(in) :: cards       !< the loop's structure
+         type(loop_numbers_t), intent(inout) :: loop   !< its numbers: unit and coarse are set; loop_angles: both stay
          real(wp) :: own, known
          logical :: slides
          integer :: k
@@ -158,21 +161,21 @@ contains
          loop%coarse = known
       end subroutine measure
 
-      !> Gives the largest component of vectors; 0 of none.
+      !> Gives the size of the largest component of vectors; 0 without vectors.
       pure real(wp) function largest(vectors)
          type(vector_t), intent(in) :: vectors(:)   !< (any number) in one unit
 
          largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
       end function largest
 
-      !> Divides the rows of a loop by its unit.
+      !> Divides the rows, the vectors and the slides of a loop by its unit.
       subroutine divide(first_row, loop, own)
          integer, intent(in) :: first_row    !< the first row of its block, among all rows
-         type(block_loop_t), intent(in) :: loop
-         type(loop_numbers_t), intent(inout) :: own
+         type(block_loop_t), intent(in) :: loop        !< the loop's structure
+         type(loop_numbers_t), intent(inout) :: own    !< its numbers, in the unit of the equations; then in own%unit
          integer :: k, side
 
-         ! A slide by itself.
+         ! The equation of one slide has the unit of that slide.
          if (loop%kind == loop_angles) own%unit = x%unit(loop%orientation)
          do side = 1, 2
             k = merge(loop%row_x, loop%row_y, side == 1)
@@ -196,12 +199,13 @@ contains
       end subroutine divide
    end subroutine find_units
 
-   !> Bounds |J(x) - J(z)|/|x - z| of a block in the maximum norm: for a row, the sum of its second derivatives. Slides
-   !> count with the length of their unit; a projection turns once more with its own orientation.
+   !> Bounds |J(y) - J(z)|/|y - z| of the Jacobian J of a block in the maximum norm, by the sum of the second
+   !> derivatives in each row. A slide counts as one unit long; a projection has the derivatives by its own orientation
+   !> as well.
    pure real(wp) function lipschitz_of(b, x, block) result(lipschitz)
       type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      type(block_t), intent(in) :: block
+      type(geometry_t), intent(in) :: x      !< its loops in their own units
+      type(block_t), intent(in) :: block     !< a block of `b`
       real(wp) :: row
       integer :: m
 
@@ -217,7 +221,7 @@ contains
       end do
    end function lipschitz_of
 
-   !> Adds up the lengths of vectors.
+   !> Adds up the lengths of vectors; 0 without vectors.
    pure real(wp) function sum_of_lengths(vectors)
       type(vector_t), intent(in) :: vectors(:)   !< (any number) in one unit
 

@@ -1,7 +1,7 @@
-!> The structure by which the engine of one independent mechanism solves it: its blocks, that is matching and strongly
-!> connected components on which unknown is in which equation, the part with too many equations first. The vector loops
-!> of each block are split into what it knows and what it solves for. Each entry of the block's Jacobian has its place:
-!> in a dense matrix by columns, or in the order of a sparse one's pattern, which is made here.
+!> The structure by which one independent mechanism is solved: its blocks, by matching equations with unknowns and by
+!> strongly connected components, the part with too many equations first. The vector loops of each block are split into
+!> the part that earlier blocks give and the part that the block solves for. Each entry of the block's Jacobian has its
+!> address: in a dense matrix by columns, or in the order of a sparse matrix's pattern, which is made here.
 module block_structure
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
@@ -18,16 +18,16 @@ module block_structure
    private
    public :: structure_t, make_structure, new_blocks
 
-   !> The structure and its first geometry: made once, and handed to the engine, which takes both over.
+   !> The structure of an independent mechanism and its first geometry. The solver of the mechanism takes both over.
    type :: structure_t
-      type(blocks_t), allocatable :: blocks
-      type(geometry_t), allocatable :: geometry      !< of the numbers on the cards
+      type(blocks_t), allocatable :: blocks          !< without blocks if not solvable
+      type(geometry_t), allocatable :: geometry      !< of the numbers on the cards; not solvable: of the equations only
    end type structure_t
 
 contains
 
-   !> Makes the structure of an independent mechanism, in place. Time and memory are proportional to its links, pairs
-   !> and drives.
+   !> Makes the structure of an independent mechanism, and the geometry by the numbers on its cards. Tolerance, chain
+   !> and cylinders of the geometry are not set. Time and memory are proportional to its links, pairs and drives.
    subroutine make_structure(m, structure)
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(out) :: structure
@@ -48,10 +48,11 @@ contains
       end associate
    end subroutine make_structure
 
-   !> Divides equations into blocks, without numbers. If an unknown has no equation, there are no blocks: `solvable`.
+   !> Divides equations into blocks, without numbers. If an unknown has no equation, b%solvable is false, there are no
+   !> blocks, and b%loose lists the unknowns that may be free.
    function new_blocks(tree, equations) result(b)
       type(spanning_tree_t), intent(in) :: tree
-      type(equations_t), intent(in) :: equations
+      type(equations_t), intent(in) :: equations   !< on this tree, with `has_vector` and `counts`
       type(blocks_t) :: b
       type(incidence_t) :: g
       integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), rows(:)
@@ -73,7 +74,7 @@ contains
 
       over = overdetermined(g, unknown_of, equation_of)
       call find_blocks(g, equation_of, over, first, member)
-      ! The block of the equations that are too many comes first: it needs nothing of the others.
+      ! The part with too many equations is the first block: it needs no unknown of another block.
       if (b%redundant > 0) then
          rows = pack([(i, i=1, size(over))], over)
          member = [rows, member]
@@ -94,7 +95,7 @@ contains
          b%block_of(b%unknown(b%list(i)%first:b%list(i)%last)) = i
       end do
 
-      ! Drives, and which blocks need no iteration.
+      ! The right-hand sides, and which blocks need no iteration.
       allocate (b%rows(size(member)))
       do i = 1, size(b%list)
          do k = b%list(i)%first_row, b%list(i)%last_row
@@ -105,7 +106,7 @@ contains
                b%list(i)%explicit = any(equation%kind == [equation_angle, equation_slide]) &
                   .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
                if (.not. (b%list(i)%explicit .and. row%angular)) cycle
-               ! phi_orientation - phi_less = constant + value, solved for the one that is unknown.
+               ! phi_orientation - phi_less = constant + value, solved for the angle of the block.
                row%other = equation%less
                if (b%unknown(b%list(i)%first) /= equation%less) cycle
                row%other = equation%orientation
@@ -120,17 +121,17 @@ contains
       call find_places(b)
    end function new_blocks
 
-   !> Fills the loops of all blocks that iterate.
+   !> Fills loops, body vectors and slides of all blocks that are not explicit, but for the addresses of their entries.
    subroutine fill_block_loops(equations, member, b)
-      type(equations_t), intent(in) :: equations
+      type(equations_t), intent(in) :: equations   !< with `has_vector` and `counts`
       integer, intent(in) :: member(:)       !< (rows) the number of each row's equation, by block
-      type(blocks_t), intent(inout) :: b
-      integer :: column(0:b%unknowns)                 ! of the block being filled; 0: not its own
-      integer :: latest(0:equations%vector_loops%count)       ! the block loop made of each vector loop last
+      type(blocks_t), intent(inout) :: b     !< with its blocks, unknowns and rows
+      integer :: column(0:b%unknowns)                 ! of the block that is being filled; 0: another block's unknown
+      integer :: latest(0:equations%vector_loops%count)       ! the last block loop made of each vector loop
       integer :: loops, body_vectors, slides          ! how many of each have been filled
       integer :: i, k
 
-      ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
+      ! Room for all loops: a vector loop whose two components are in different blocks is in both blocks.
       allocate (b%loops(equations%count), b%body_vectors(2*equations%vector_loops%vectors), &
          b%slides(2*equations%vector_loops%slides))
 
@@ -162,10 +163,11 @@ contains
 
    contains
 
-      !> Adds a row, in a loop of its own unless x and y of one vector loop share it.
+      !> Adds the row of an equation to the block that is being filled, in a loop of its own unless the other component
+      !> of its vector loop already has a loop in the block.
       subroutine add_row(equation, row, first_loop)
          type(equation_t), intent(in) :: equation
-         integer, intent(in) :: row          !< its number in the block
+         integer, intent(in) :: row          !< the number of the row in the block
          integer, intent(in) :: first_loop   !< the first loop of the block, among all loops
 
          if (any(equation%kind == [equation_x, equation_y])) then
@@ -192,8 +194,8 @@ contains
          end associate
       end subroutine add_row
 
-      !> Adds a vector loop as the block at hand has it: first the body vectors that the block knows, then those of its
-      !> own orientations.
+      !> Adds a vector loop as the block that is being filled has it: first the body vectors that angles of earlier
+      !> blocks rotate, then those that angles of the block rotate.
       subroutine add_block_loop(i, kind)
          integer, intent(in) :: i            !< the number of the vector loop; 0: one without vectors
          integer, intent(in) :: kind         !< loop_components, loop_projection or loop_angles
@@ -229,13 +231,14 @@ contains
       end subroutine add_block_loop
    end subroutine fill_block_loops
 
-   !> Finds the places of all entries in the Jacobians, and the patterns of the blocks whose Jacobian is best sparse.
+   !> Finds the addresses of all entries in the Jacobians, the patterns of the blocks whose Jacobian is best sparse, and
+   !> how many entries of each Jacobian are cleared before it is assembled.
    subroutine find_places(b)
-      type(blocks_t), intent(inout) :: b
+      type(blocks_t), intent(inout) :: b     !< with its loops, body vectors and slides
       type(pattern_t) :: pattern
-      ! Entries come row by row: of each column the row noted latest and where its last entry stands.
+      ! (columns) Entries come row by row: the last row that has an entry, and the address of that entry.
       integer, allocatable :: latest(:), last(:)
-      integer :: i, c, patterns, rows                 ! rows: of a dense matrix; 0: sparse
+      integer :: i, c, patterns, rows                 ! rows: of a dense matrix; 0: the matrix is sparse
 
       allocate (b%patterns(count(may_be_sparse(b%list%shape))))
       patterns = 0
@@ -271,6 +274,7 @@ contains
             call place_entries(b%list(i))
          end associate
       end do
+
       b%patterns = b%patterns(:patterns)
       do i = 1, size(b%list)
          associate (block => b%list(i), entries => entries_of(b%list(i)%shape), &
@@ -282,7 +286,7 @@ contains
 
    contains
 
-      !> Finds the places of all entries of a block, row by row.
+      !> Finds the addresses of all entries in the Jacobian of a block, row by row.
       subroutine place_entries(block)
          type(block_t), intent(in) :: block
          integer :: m, k, side, row
@@ -306,11 +310,12 @@ contains
          end do
       end subroutine place_entries
 
-      !> Finds the place of an entry in the Jacobian of the block at hand.
+      !> Finds the address of an entry in the Jacobian of a block, and completes the pattern if that is being filled.
+      !> Entries must come row by row; several may have one address.
       subroutine place(row, column, at)
-         integer, intent(in) :: row          !< its number in the block
-         integer, intent(in) :: column       !< its number in the block; 0: known, no column
-         integer, intent(out) :: at          !< the place; 0: no column
+         integer, intent(in) :: row          !< the number of its row in the block
+         integer, intent(in) :: column       !< the number of its column; 0: an earlier block has the unknown
+         integer, intent(out) :: at          !< the address among the entries, from 1; 0: there is no column
 
          at = 0
          if (column == 0) return
@@ -327,7 +332,7 @@ contains
       end subroutine place
    end subroutine find_places
 
-   !> Tells whether a square Jacobian of so many rows may be better sparse, if it has few entries.
+   !> Tells whether a Jacobian is square and has so many rows that it would be best sparse with few entries.
    elemental logical function may_be_sparse(shape)
       type(matrix_layout_t), intent(in) :: shape
 

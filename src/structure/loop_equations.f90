@@ -3,7 +3,7 @@
 !> components to be zero, a prismatic pair that the projection on the guide's normal is h. A drive X or Y gives one
 !> component of its point, a drive SLIDE the projection along the guide.
 !>
-!> Equations are integers; `equation_numbers_t` holds what the numbers of the cards make of them.
+!> Equations are integers; `equation_numbers_t` holds the numbers that the cards make of them.
 module loop_equations
    use kinds, only: wp
    use plane_vectors, only: wrap_angle, direction
@@ -25,41 +25,45 @@ module loop_equations
    integer, parameter :: equation_y = 2           !< y of a vector loop
    integer, parameter :: equation_projection = 3  !< projection of a vector loop on a direction that turns with a link
    integer, parameter :: equation_angle = 4       !< angle of an orientation, or of one less another
-   integer, parameter :: equation_slide = 5       !< a slide
+   integer, parameter :: equation_slide = 5       !< a slide of the tree
+
 
    !> An equation: the coordinate that `kind` names = a constant + value of the drive.
    type :: equation_t
-      integer :: kind = equation_angle
-      integer :: vector_loop = 0
-      integer :: drive = 0                        !< 0: a pair's equation
-      integer :: pair = 0                         !< 0: a drive's equation
-      integer :: orientation = 0                  !< projection and angle; slide: the slide's number
+      integer :: kind = equation_angle            !< equation_x, ...
+      integer :: vector_loop = 0                  !< x, y and projection: the number of the loop; 0: none
+      integer :: drive = 0                        !< the number of its drive; 0: a pair's equation
+      integer :: pair = 0                         !< the number of its pair; 0: a drive's equation
+      !> Projection: the orientation with which the direction turns; angle: the orientation; slide: the slide's number.
+      integer :: orientation = 0
       integer :: less = 0                         !< angle: the orientation whose angle is subtracted; 0: none
    end type equation_t
 
+   !> The equations of a mechanism.
    type :: equations_t
-      integer :: count = 0
+      integer :: count = 0                        !< how many there are
       type(equation_t), allocatable :: list(:)    !< (count), with room after them
-      type(vector_loops_t) :: vector_loops
+      type(vector_loops_t) :: vector_loops        !< of the equations of kinds x, y and projection
       logical, allocatable :: has_vector(:)       !< (body vectors) it does not vanish
-      logical, allocatable :: counts(:, :)        !< (2, slides) in x of its loop, or in the projection; in y
+      logical, allocatable :: counts(:, :)        !< (2, slides) it is in x of its loop, or in the projection; in y
    end type equations_t
 
-   !> The numbers of equations, lengths in units of `length`.
+   !> The numbers of equations, lengths in units of `length`, angles in rad.
    type :: equation_numbers_t
-      real(wp) :: length = 1.0_wp
-      type(axes_t) :: axes
-      type(loop_sums_t) :: sums
-      real(wp), allocatable :: direction(:, :)    !< (2, equations) projection: in the axes of the orientation
+      real(wp) :: length = 1.0_wp                 !< their unit of length, in the deck's unit
+      type(axes_t) :: axes                        !< in the deck's unit of length
+      type(loop_sums_t) :: sums                   !< body vectors and slides of their loops
+      real(wp), allocatable :: direction(:, :)    !< (2, equations) projection: unit vector, in its orientation's axes
       real(wp), allocatable :: constant(:)        !< (equations)
    end type equation_numbers_t
 
 contains
 
-   !> Makes the equations of a mechanism on its tree.
+   !> Makes the equations of a mechanism on its tree: those of the pairs that close loops, then those of prismatic pairs
+   !> that fix an angle again, then those of the drives. Without numbers: `has_vector` and `counts` are not allocated.
    function new_equations(m, tree) result(e)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
       type(equations_t) :: e
       type(search_t) :: s
       type(sorted_t) :: closing
@@ -85,6 +89,7 @@ contains
          end associate
       end do
       closing = sorted(depth, 1 + 2*maxval(tree%depth))
+
       do i = 1, size(closing%member)
          k = closing%member(i)
          associate (p => m%pairs(k), n => e%vector_loops%count)
@@ -101,6 +106,7 @@ contains
             end if
          end associate
       end do
+
       do i = 1, size(tree%surplus)
          call add(equation_t(equation_angle, pair=tree%surplus(i)))
       end do
@@ -110,9 +116,9 @@ contains
 
    contains
 
-      !> Adds the equation of a drive.
+      !> Adds the equation of a drive, and the vector loop that it needs.
       subroutine add_drive(k)
-         integer, intent(in) :: k            !< its number
+         integer, intent(in) :: k            !< the number of the drive
          integer :: link
 
          associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
@@ -157,12 +163,12 @@ contains
       end subroutine add
    end function new_equations
 
-   !> Makes the numbers of equations from those of a mechanism.
+   !> Makes the numbers of equations from the numbers of a mechanism.
    function new_equation_numbers(m, tree, length, equations) result(x)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
       real(wp), intent(in) :: length         !< unit of length of the equations, in the deck's unit
-      type(equations_t), intent(inout) :: equations   !< `has_vector` and `counts` are found
+      type(equations_t), intent(inout) :: equations   !< by `new_equations`; `has_vector` and `counts` are found
       type(equation_numbers_t) :: x
 
       associate (p => equations%vector_loops)
@@ -175,13 +181,13 @@ contains
       call find_unknowns(equations, x, equations%has_vector, equations%counts)
    end function new_equation_numbers
 
-   !> Puts the numbers of a mechanism into those of its equations.
+   !> Fills the numbers of equations from the numbers of a mechanism.
    subroutine assign_equation_numbers(m, tree, length, equations, numbers)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`, or of a mechanism of equal structure
       real(wp), intent(in) :: length         !< unit of length of the equations, in the deck's unit
-      type(equations_t), intent(in) :: equations
-      type(equation_numbers_t), intent(inout) :: numbers
+      type(equations_t), intent(in) :: equations   !< on this tree
+      type(equation_numbers_t), intent(inout) :: numbers   !< its lists are allocated
       integer :: i
 
       numbers%length = length
@@ -190,18 +196,19 @@ contains
       do i = 1, equations%count
          associate (q => equations%list(i), angle => numbers%axes%angle_offset, across => equations%list(i)%kind == &
             equation_projection)
+
             if (q%pair > 0) then
                associate (pair => m%pairs(q%pair))
-                  ! An angle is that by which the pair differs from the angle that other prismatic pairs give its links;
-                  ! whole turns are no difference.
+                  ! The angle by which beta of the pair differs from the angle between its links that other prismatic
+                  ! pairs give, without whole turns.
                   if (across) numbers%direction(:, i) = guide(m, numbers%axes, q%pair, across=.true.)
                   if (across) numbers%constant(i) = pair%offset/length
                   if (q%kind == equation_angle) numbers%constant(i) = wrap_angle(pair%beta &
                      + angle(m%points(pair%point_i)%link) - angle(m%points(pair%point_j)%link))
                end associate
+
             else
                associate (drive => m%drives(q%drive))
-
                   select case (drive%kind)
                   case (drive_angle)
                      numbers%constant(i) = -angle(drive%subject)
@@ -220,11 +227,11 @@ contains
       end do
    end subroutine assign_equation_numbers
 
-   !> Finds which body vectors and slides are in equations with given numbers. A slide is not if it is at right angles
-   !> to the direction of the equation in every position.
+   !> Finds which body vectors and slides are in equations with given numbers. A slide is not in an equation if in every
+   !> position it is at right angles to the direction of the equation: their cosine is within 8 units of rounding.
    pure subroutine find_unknowns(equations, numbers, has_vector, counts)
       type(equations_t), intent(in) :: equations
-      type(equation_numbers_t), intent(in) :: numbers
+      type(equation_numbers_t), intent(in) :: numbers   !< of the equations
       logical, intent(out) :: has_vector(:)  !< (body vectors) as in `equations_t`
       logical, intent(out) :: counts(:, :)   !< (2, slides) as in `equations_t`
       real(wp) :: asked(2)
@@ -235,7 +242,7 @@ contains
       do i = 1, equations%count
          associate (q => equations%list(i), p => equations%vector_loops)
             do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
-               ! What is fixed makes no unknown; but what turns with a projection.
+               ! A fixed vector brings no unknown, unless the direction of a projection turns.
                if (p%vector_orientation(k) > 0 .or. (q%kind == equation_projection .and. q%orientation > 0)) &
                   has_vector(k) = .not. vanishes(numbers%sums, k)
             end do
@@ -259,7 +266,7 @@ contains
 
    !> Lists the unknowns of each equation.
    function incidence(equations, orientations, unknowns) result(g)
-      type(equations_t), intent(in) :: equations
+      type(equations_t), intent(in) :: equations   !< with `has_vector` and `counts`
       integer, intent(in) :: orientations    !< how many angles are unknown: unknowns 1 to `orientations`
       integer, intent(in) :: unknowns        !< how many unknowns there are: angles, then slides
       type(incidence_t) :: g
@@ -276,20 +283,22 @@ contains
          associate (q => equations%list(i), p => equations%vector_loops)
             select case (q%kind)
             case (equation_angle)
-               ! Two links that turn together: their angles cancel.
+               ! The angles of two links that turn together cancel.
                if (q%orientation /= q%less) then
                   call note(q%orientation)
                   call note(q%less)
                end if
             case (equation_slide)
                call note(orientations + q%orientation)
+
             case default
                associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
                   s => p%first_slide(q%vector_loop), t => p%first_slide(q%vector_loop + 1) - 1)
                   turns = any(equations%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
                      .or. any(p%slide_orientation(s:t) /= q%orientation)
-                  ! What turns with the direction of the projection has a constant part in it.
+                  ! A vector that turns with the direction of the projection has a constant projection.
                   constant = merge(q%orientation, 0, q%kind == equation_projection .and. .not. turns)
+
                   do k = v, w
                      if (equations%has_vector(k) .and. p%vector_orientation(k) /= &
                         constant) call note(p%vector_orientation(k))
@@ -307,7 +316,7 @@ contains
 
    contains
 
-      !> Notes an unknown in the equation at hand, once; the ground's orientation is none.
+      !> Adds an unknown to equation `i`, once. The angle of the ground's orientation is no unknown.
       subroutine note(unknown)
          integer, intent(in) :: unknown      !< its number; 0: the ground
 
@@ -320,11 +329,11 @@ contains
       end subroutine note
    end function incidence
 
-   !> Puts the numbers of a mechanism into the axes of its links.
+   !> Fills the axes of links from the numbers of a mechanism.
    pure subroutine assign_axes(m, tree, axes)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(inout) :: axes
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`, or of a mechanism of equal structure
+      type(axes_t), intent(inout) :: axes    !< its lists are allocated
       integer :: i, k, link
 
       axes%origin = plane_origin(m)

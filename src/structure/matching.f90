@@ -1,5 +1,5 @@
-!> A largest matching of equations with unknowns, and what follows from it: the blocks, the equations that are too many,
-!> and the unknowns with too few. Which unknown is in which equation is all that is looked at.
+!> A largest matching of equations with unknowns, and its consequences: the blocks, the equations that are too many,
+!> and the unknowns with too few. The only data are which unknown is in which equation.
 !>
 !> Matching: augmenting paths, depth first with a look ahead (Duff, ACM TOMS 7, 1981). Blocks: the strongly connected
 !> components of the graph in which an equation points to those that its other unknowns are matched with (Tarjan,
@@ -16,7 +16,7 @@ module matching
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
-      integer :: equations = 0, unknowns = 0
+      integer :: equations = 0, unknowns = 0      !< how many there are
       integer, allocatable :: first(:), unknown(:)
    end type incidence_t
 
@@ -27,8 +27,8 @@ contains
       type(incidence_t), intent(in) :: incidence
       integer, allocatable, intent(out) :: unknown_of(:)    !< (equations) the unknown matched with each; 0: none
       integer, allocatable, intent(out) :: equation_of(:)   !< (unknowns) the equation matched with each; 0: none
-      ! Of each equation: where the look ahead for a free unknown stands, never set back, and the last search that came
-      ! to it. Of the search at hand: its path of equations, and the place of the next unknown of each.
+      ! (equations) look: the index of the next unknown in the look ahead, never set back; seen: the last search that
+      ! came to it. Of one search: its path of equations, and of each equation the index of its next unknown.
       integer :: look(incidence%equations), seen(incidence%equations), path(incidence%equations), &
          next(incidence%equations)
       integer :: i, e
@@ -73,6 +73,7 @@ contains
                path(depth) = e
                next(depth) = incidence%first(e)
                seen(e) = start
+
                do while (look(e) < incidence%first(e + 1))
                   u = incidence%unknown(look(e))
                   look(e) = look(e) + 1
@@ -99,15 +100,15 @@ contains
       end subroutine augment
    end subroutine match
 
-   !> Finds the blocks of a perfect matching. Equations member(first(k)), ..., member(first(k + 1) - 1) are block k,
-   !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. Without equations there
-   !> is no block.
+   !> Finds the blocks of a matching that gives each unknown an equation. Equations member(first(k)), ...,
+   !> member(first(k + 1) - 1) are block k, solved for the unknowns matched with them. A block needs unknowns of earlier
+   !> blocks only, and unknowns of the equations left out. Without equations there is no block.
    subroutine find_blocks(incidence, equation_of, skip, first, member)
       type(incidence_t), intent(in) :: incidence
-      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation matched with each
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation matched with each, never 0
       logical, intent(in) :: skip(:)         !< (equations) the equation belongs to no block
       integer, allocatable, intent(out) :: first(:)    !< (blocks + 1) where each block begins in `member`
-      integer, allocatable, intent(out) :: member(:)   !< (equations) their numbers, by block in solving order
+      integer, allocatable, intent(out) :: member(:)   !< (equations not left out) numbers, by block in solving order
       integer, parameter :: done = huge(1)
       integer :: number(incidence%equations), low(incidence%equations), path(incidence%equations), &
          next(incidence%equations)
@@ -140,7 +141,7 @@ contains
                cycle
             end if
 
-            ! It waits for no more: all that stands on the stack down to it may be one block.
+            ! `e` waits for no more: the equations on the stack down to `e` may be one block.
             depth = depth - 1
             if (depth > 0) low(path(depth)) = min(low(path(depth)), low(e))
             if (low(e) < number(e)) cycle
@@ -161,7 +162,7 @@ contains
 
    contains
 
-      !> Enters an equation to which the search has come.
+      !> Puts an equation to which the search has come on path and stack, with the next number.
       subroutine enter(equation)
          integer, intent(in) :: equation     !< its number
 
@@ -177,7 +178,7 @@ contains
    end subroutine find_blocks
 
    !> Finds the part with too many equations (equations): those without an unknown, and all that are matched with
-   !> unknowns of these, again and again. The part needs no other unknowns.
+   !> unknowns of equations of the part. The part needs no other unknowns.
    function overdetermined(incidence, unknown_of, equation_of) result(over)
       type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none
@@ -203,8 +204,8 @@ contains
       end do
    end function overdetermined
 
-   !> Finds the part with too few equations (unknowns): the free unknowns, and all that could be free in their place.
-   !> With equations and unknowns exchanged, too few equations are too many.
+   !> Finds the part with too few equations (unknowns): the free unknowns, and all that another largest matching could
+   !> leave free. With equations and unknowns exchanged it is the part with too many equations.
    function underdetermined(incidence, unknown_of, equation_of) result(loose)
       type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none

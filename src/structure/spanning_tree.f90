@@ -1,9 +1,9 @@
-!> The spanning tree of a mechanism, by which its unknowns are few, and where things are on it. Links that prismatic
-!> pairs join turn together: they share one orientation and one unknown angle. A link that a revolute pair joins to its
-!> parent needs no x and y of its own. The pairs left over close the loops.
+!> The spanning tree of a mechanism, which makes its unknowns few, and the points and guides in its axes. Links that
+!> prismatic pairs join turn together: they share one orientation and one unknown angle. A link that a revolute pair
+!> joins to its parent needs no x and y of its own. The pairs left over close the loops.
 !>
 !> The tree grows from the ground, revolute pairs first: a prismatic pair that closes a loop costs one equation and
-!> no unknown, one in the tree a slide. The tree is integers only; the axes in which its links stand are `axes_t`.
+!> no unknown, a prismatic pair in the tree costs a slide. The tree is integers only; its axes are `axes_t`.
 module spanning_tree
    use kinds, only: wp
    use plane_vectors, only: direction, rotated, quarter_turn
@@ -13,26 +13,27 @@ module spanning_tree
    private
    public :: spanning_tree_t, new_tree, axes_t, other_link, point_offset, guide
 
+   !> Links and pairs have the numbers of the mechanism.
    type :: spanning_tree_t
-      integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
-      integer :: slides = 0                 !< slides of prismatic pairs in the tree
-      integer :: roots = 0                  !< parts that no pair joins to the ground
-      integer, allocatable :: orientation(:)     !< (links)
-      integer, allocatable :: by_angle(:)        !< (links) so that links whose angle prismatic pairs give come later
+      integer :: orientations = 0           !< how many angles are unknown; orientation 0 is the ground's
+      integer :: slides = 0                 !< how many prismatic pairs are in the tree
+      integer :: roots = 0                  !< how many parts of the mechanism no pair joins to the ground
+      integer, allocatable :: orientation(:)     !< (links) the number of its orientation
+      integer, allocatable :: by_angle(:)        !< (links) a link after the one at the other end of its `angle_pair`
       integer, allocatable :: angle_pair(:)      !< (links) the prismatic pair that gives its angle; 0: none
       integer, allocatable :: parent_joint(:)    !< (links) the pair to the parent; 0: ground or root
       integer, allocatable :: parent(:)      !< (links) the next link towards the ground; 0: ground or root
-      integer, allocatable :: depth(:)      !< (links)
-      integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
+      integer, allocatable :: depth(:)      !< (links) pairs between it and the ground or the root of its part
+      integer, allocatable :: root(:)       !< (links) the number of its part; 0: pairs join it to the ground
       integer, allocatable :: order(:)      !< (links) from the ground outwards: parents come first
       integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
       type(sorted_t) :: near               !< the pairs of each link
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
    end type spanning_tree_t
 
-   !> The axes of a mechanism's links: what the numbers of its cards make of the tree.
+   !> The axes of a mechanism's links by the numbers of its cards.
    type :: axes_t
-      real(wp) :: origin(2) = 0.0_wp             !< from which places are counted
+      real(wp) :: origin(2) = 0.0_wp             !< from which positions are counted, in the deck's unit of length
       real(wp), allocatable :: angle_offset(:)   !< (links) phi of the link less the angle of its orientation, rad
       real(wp), allocatable :: turn(:, :)        !< (2, links) the unit vector at this angle
    end type axes_t
@@ -52,7 +53,8 @@ contains
 
    contains
 
-      !> Joins every link to the tree, breadth first. A prismatic pair is taken only if no revolute pair reaches on.
+      !> Joins every link to the tree, breadth first. A prismatic pair is taken only if no revolute pair leads from the
+      !> tree to another link.
       subroutine grow()
          integer :: revolute_next, prismatic_next, link
          logical :: attached
@@ -89,11 +91,11 @@ contains
          end do
       end subroutine grow
 
-      !> Joins neighbours of a link to the tree: all that its revolute pairs reach, or one along a prismatic pair.
+      !> Joins neighbours of a link that are not yet in the tree: all at its revolute pairs, or one at a prismatic pair.
       subroutine attach_neighbours(sliding, link, attached)
-         logical, intent(in) :: sliding      !< by a prismatic pair
-         integer, intent(in) :: link         !< its number
-         logical, intent(out) :: attached    !< some neighbour was not yet in the tree
+         logical, intent(in) :: sliding      !< one at a prismatic pair; otherwise all at revolute pairs
+         integer, intent(in) :: link         !< its number; it is in the tree
+         logical, intent(out) :: attached    !< some neighbour was joined
          integer :: i, k
 
          attached = .false.
@@ -127,11 +129,12 @@ contains
       end subroutine attach
    end function new_tree
 
-   !> Finds the orientations by a walk over prismatic pairs only, first from the ground links, then from every link
-   !> not yet seen.
+   !> Finds the orientations of links by a walk over prismatic pairs only, first from the ground links, then from every
+   !> link not yet met.
    subroutine find_orientations(m, tree)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(inout) :: tree   !< with the pairs of each link; then also with the orientations
+      !> With the pairs of each link; orientation, by_angle, angle_pair and surplus are set.
+      type(spanning_tree_t), intent(inout) :: tree
       integer :: first, next, last, link, far, i, k   ! last: the links that the walk has come to so far
       logical :: used(size(m%pairs))
 
@@ -182,12 +185,13 @@ contains
       other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
 
-   !> Gives the direction (2) of the guide of a prismatic pair, or of its normal, in the axes of its orientation.
+   !> Gives the unit vector (2) along the guide of a prismatic pair, or along the normal, in the axes of the orientation
+   !> of its links.
    pure function guide(m, axes, k, across) result(e)
       type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: axes
+      type(axes_t), intent(in) :: axes   !< of `m`
       integer, intent(in) :: k   !< the number of the pair
-      logical, intent(in) :: across   !< the normal; otherwise the guide
+      logical, intent(in) :: across   !< along the normal; otherwise along the guide
       real(wp) :: e(2), angle
 
       angle = axes%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
@@ -195,10 +199,11 @@ contains
       if (across) e = quarter_turn(e)
    end function guide
 
-   !> Gives a point (2), seen from the origin of its link, in the axes of the link's orientation, in the deck's length.
+   !> Gives the vector (2) from the origin of a link to a point of it, in the axes of the link's orientation, in the
+   !> deck's unit of length.
    pure function point_offset(m, axes, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: axes
+      type(axes_t), intent(in) :: axes   !< of `m`
       integer, intent(in) :: i   !< the number of the point
       real(wp) :: v(2)
 

@@ -1,5 +1,7 @@
-!> The structure of a set before anything is solved: the blocks of its independent mechanisms, which their engines take
-!> over, its counts, its Assur groups, and its missing and surplus equations, in words and by name.
+!> The structure of a set before anything is solved: the blocks of its independent mechanisms, its counts, its Assur
+!> groups, and its missing and redundant equations, in words and by name.
+!>
+!> With n links, n1 revolute pairs, n2 prismatic pairs and n3 ground links, by the equations of 1987:
 !>
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
@@ -20,8 +22,10 @@ module structure
    public :: structure_t, structure_report_t, group_t, make_structure, find_structure, find_groups, check_structure, &
       faults_text
 
+   !> The structure of a set. A SLOT card has a hidden link, its block: `links` and `revolute` leave it and its revolute
+   !> pair out, the counts from `coordinates` on do not.
    type :: structure_report_t
-      integer :: links = 0        !< n, ground links with them
+      integer :: links = 0        !< n, ground links included
       integer :: ground = 0       !< n3
       integer :: revolute = 0     !< n1
       integer :: prismatic = 0    !< n2
@@ -30,23 +34,25 @@ module structure
       integer :: degrees_of_freedom = 0     !< s
       integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
-      integer :: free = 0                       !< unknowns that no equation can find, among those of
-      integer, allocatable :: loose(:)          !< links that still can move
-      integer :: redundant = 0                  !< equations that are too many, among those of
-      integer, allocatable :: many_pairs(:)     !< pairs, each once for each of its equations, and of
-      integer, allocatable :: many_drives(:)    !< drives
-      type(group_t), allocatable :: groups(:)   !< in solving order, once `find_groups` has been asked for them
-      ! Of the independent mechanisms, where nothing is lacking:
-      type(set_t), allocatable :: set                   !< divided, where it is several
-      type(structure_t), allocatable :: structures(:)   !< (parts)
+      integer :: free = 0                       !< how many unknowns have no equation
+      integer, allocatable :: loose(:)          !< not solvable: numbers of the links among whose unknowns these are
+      integer :: redundant = 0                  !< how many equations are too many
+      !> Numbers of the pairs among whose equations these are, each pair once for each such equation.
+      integer, allocatable :: many_pairs(:)
+      integer, allocatable :: many_drives(:)    !< numbers of the drives among whose equations these are
+      type(group_t), allocatable :: groups(:)   !< in solving order, after `find_groups`
+      ! If each coordinate has a closure equation:
+      type(set_t), allocatable :: set                   !< the divided set, if it has two independent mechanisms or more
+      type(structure_t), allocatable :: structures(:)   !< (independent mechanisms)
    end type structure_report_t
 
-   !> A job reports the faults of at most so many sets.
+   !> A job reports the faults of at most so many sets: the faults of ten sets are enough to mend.
    integer, parameter :: max_sets = 10
 
 contains
 
-   !> Finds the counts (12) and (13) of a mechanism, and which equations its structure lacks or has too many of.
+   !> Finds the counts (12) and (13) of a set, the unknowns without equation, the redundant equations, and the structure
+   !> of each independent mechanism. If a coordinate has no closure equation, no structure is made.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t) :: f
@@ -54,7 +60,6 @@ contains
       integer, allocatable :: unknown_of(:), equation_of(:), loose(:)
       logical, allocatable :: over(:)
       integer :: k, parts
-
 
       f%links = count(.not. m%links%hidden)
       f%ground = count(m%links%ground)
@@ -97,8 +102,9 @@ contains
       end if
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, parts)])
       if (f%solvable) return
-      ! Vector loops show more: two links that a prismatic pair joins have one angle, and a bar between two points at
-      ! one place turns freely.
+
+      ! Vector loops show more: two links that a prismatic pair joins have one angle, and a bar between two coincident
+      ! points turns freely.
       f%free = sum([(f%structures(k)%blocks%free, k=1, parts)])
       f%loose = [integer ::]
       do k = 1, parts
@@ -110,7 +116,8 @@ contains
       f%loose = shown_links(m, f%loose)
    end function find_structure
 
-   !> Finds the links that may lack an equation for their angle, their slide along the link before, or their place.
+   !> Finds the links that may lack an equation for their angle, their slide along their parent, or x and y of their
+   !> root.
    pure function loose_links(blocks) result(links)
       type(blocks_t), intent(in) :: blocks   !< not solvable
       integer, allocatable :: links(:)       !< their numbers
@@ -127,11 +134,12 @@ contains
       end associate
    end function loose_links
 
-   !> Finds the Assur groups of a mechanism, without the blocks of slots; none if it is not solvable. Only the listing
-   !> has them, and the sets of a long job are checked one after another, but listed by several processes.
+   !> Finds the Assur groups of a set, without the blocks of slots; none if the set is not solvable. Reason for a door
+   !> of its own: only the listing has groups. Sets of a long job are checked one after another, but listed by several
+   !> processes.
    subroutine find_groups(m, report)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(inout) :: report   !< what `find_structure` has found; its groups are filled
+      type(structure_report_t), intent(inout) :: report   !< as `find_structure` made it; report%groups is set
       integer :: i
 
       if (.not. allocated(report%groups)) allocate (report%groups(0))
@@ -143,11 +151,12 @@ contains
       report%groups = pack(report%groups, [(size(report%groups(i)%links) > 0, i=1, size(report%groups))])
    end subroutine find_groups
 
-   !> Checks that every link of every set can be found. Errors: status_rejected.
+   !> Checks that the motion of every link of every set can be found. After `max_sets` sets with faults it stops, and
+   !> later sets have empty reports.
    subroutine check_structure(sets, structure_report, failure)
-      type(mechanism_t), intent(in) :: sets(:)
+      type(mechanism_t), intent(in) :: sets(:)   !< (sets)
       type(structure_report_t), allocatable, intent(out) :: structure_report(:)   !< (sets)
-      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable, intent(out) :: failure   !< status_rejected with all faults; without: not allocated
       character(:), allocatable :: text, all_of_them
       integer :: i, reported
 
@@ -169,7 +178,7 @@ contains
    !> Names each fault of a set, in lines that are joined by new_line('a'); '' without a fault.
    function faults_text(m, report, set) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: report
+      type(structure_report_t), intent(in) :: report   !< of `m`, by `find_structure`
       integer, intent(in) :: set   !< the number of the set in the deck
       character(:), allocatable :: text
 
@@ -195,7 +204,7 @@ contains
 
    contains
 
-      !> Appends a line.
+      !> Appends a line to `text`; a line that is not the first begins with ' *** '.
       subroutine add_line(line)
          character(*), intent(in) :: line    !< without its end
 
@@ -205,22 +214,22 @@ contains
 
    end function faults_text
 
-   !> Lists names with a word before them: LINK A, or LINKS A, B.
+   !> Lists names after a word, which has its plural for two names or more: LINK A, or LINKS A, B.
    function counted(word, names) result(text)
-      character(*), intent(in) :: word       !< of one of them
-      character(*), intent(in) :: names(:)   !< (1 or more)
+      character(*), intent(in) :: word       !< for one of them
+      character(*), intent(in) :: names(:)   !< (1 or more) the names
       character(:), allocatable :: text
 
       text = word//trim(merge(' ', 'S', size(names) == 1))//' '//listed(names, .false.)
    end function counted
 
-   !> Names the two links of each pair of the links that still can move, and of the pairs with surplus equations. A
-   !> JOINT card may have a wrong link. Each line begins with new_line('a'). Without JOINT cards the text is ''.
+   !> Names the two links of each pair of a link that still can move, and of each pair with redundant equations: a JOINT
+   !> card may have a wrong link. Each line begins with new_line('a'). Without JOINT cards the text is ''.
    function joined_links(m, report) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: report
+      type(structure_report_t), intent(in) :: report   !< of `m`, not solvable
       character(:), allocatable :: text
-      !> Pairs in a line of 80 columns, and in all.
+      !> Pairs in a line, which with three names each fits into 80 columns; and in all: ten lines.
       integer, parameter :: pairs_a_line = 4, most = 40
       integer :: i, n, ends(2)
 
@@ -244,10 +253,10 @@ contains
       text = text//more(max(0, n - most), .false.)
    end function joined_links
 
-   !> Names the surplus equations: TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
+   !> Names pairs and drives with redundant equations: TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, report) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: report
+      type(structure_report_t), intent(in) :: report   !< of `m`, with redundant equations
       character(:), allocatable :: text
       integer, allocatable :: pairs(:)
       integer :: i

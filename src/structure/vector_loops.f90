@@ -8,9 +8,9 @@
 !> A loop is integers: which points and prismatic pairs it is the sum of. The numbers of the cards make `loop_sums_t` of
 !> its body vectors.
 !>
-!> The paths lead over the pairs taken so far: those of the tree, and each revolute pair once it has closed its loop. A
-!> loop that takes the shortest such path holds its own pair and earlier ones only, so all loops are independent; and it
-!> holds few links, so the blocks stay small and the work proportional to the links.
+!> The paths lead over the pairs taken so far: those of the tree, and each revolute pair after it has closed its loop. A
+!> loop by the shortest such path holds its own pair and earlier ones only: all loops are independent. It holds few
+!> links: the blocks stay small, and the work is proportional to the links.
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, has_guide
@@ -20,63 +20,67 @@ module vector_loops
    public :: vector_loops_t, add_vector_loop, loop_sums_t, assign_sums, vanishes
    public :: search_t, find_path
 
-   !> The memory of a search; links are nodes, all ground links one, node 0.
+   !> The memory of searches. A link is a node; all ground links are node 0. A search goes from both ends: node n has
+   !> the index 2 n for end 1 and 2 n + 1 for end 2.
    type :: search_t
-      logical, allocatable :: open(:)       !< (pairs) can be gone through
-      integer, allocatable :: pairs(:)      !< (length) the path found last
-      integer :: length = 0
-      integer, allocatable :: via(:)        !< (0:links, of either end, flat) pair by which a node was reached
-      integer, allocatable :: seen(:)       !< number of the search that reached it
-      integer, allocatable :: queue(:, :)   !< (0:links, 2)
-      integer :: number = 0
+      logical, allocatable :: open(:)       !< (pairs) paths can lead over it
+      integer, allocatable :: pairs(:)      !< (length) numbers of the pairs of the last path, with room after them
+      integer :: length = 0                 !< how many pairs the path found last has
+      integer, allocatable :: via(:)        !< (0:2 links + 1) the pair by which a node was reached; 0: it is the end
+      integer, allocatable :: seen(:)       !< (0:2 links + 1) the number of the search that reached the node last
+      integer, allocatable :: queue(:, :)   !< (0:links, 2) the nodes reached from each end, in turn
+      integer :: number = 0                 !< of the last search, from 1
    end type search_t
 
    !> Body vectors of loop p are first_vector(p), ..., first_vector(p + 1) - 1; slides and terms likewise. Loop 0 has
    !> none. Orientation 0 is the ground's. All lists have room for more.
    type :: vector_loops_t
-      integer :: count = 0
-      integer :: vectors = 0, slides = 0, term_count = 0 !< so far, with those of the loop in the making
+      integer :: count = 0                               !< how many loops there are
+      integer :: vectors = 0, slides = 0, term_count = 0 !< how many there are, those of an unfinished loop included
       integer, allocatable :: first_vector(:), first_slide(:), first_term(:)   !< (0:loops + 1)
-      integer, allocatable :: vector_orientation(:)      !< (body vectors)
-      integer, allocatable :: slide_orientation(:), slide_number(:)   !< (slides)
-      integer, allocatable :: slide_pair(:)              !< (slides) with its sign in the loop; 0: x or y of a root
-      !> (2, terms) What the loop is the sum of: each a point (its number, 0), from its link's origin, or a prismatic
-      !> pair's P - Q (0, its number), with their signs.
+      integer, allocatable :: vector_orientation(:)      !< (body vectors) the orientation that rotates it
+      integer, allocatable :: slide_orientation(:), slide_number(:)   !< (slides) turns its guide; number in tree
+      integer, allocatable :: slide_pair(:)              !< (slides) its pair, with its sign in the loop; 0: a root's
+      !> (2, terms) The summands of the loops: a point (its number, 0) as a vector from its link's origin, or the vector
+      !> P - Q of a prismatic pair (0, its number), with their signs.
       integer, allocatable :: terms(:, :)
       integer, allocatable :: term_vector(:)             !< (terms) the body vector to which each is added
-      integer, allocatable :: vector_of(:)               !< (0:orientations) of the loop in the making; 0: none
+      !> (0:orientations) the body vector of the unfinished loop that the orientation rotates; 0: none
+      integer, allocatable :: vector_of(:)
    end type vector_loops_t
 
-   !> Body vectors and slides of all loops, in the axes of their orientations, lengths in one unit.
+   !> Body vectors and slides of all loops, in the axes of their orientations, lengths in the unit of the equations.
    type :: loop_sums_t
       real(wp), allocatable :: body_vector(:, :)         !< (2, body vectors) d
       real(wp), allocatable :: largest(:)                !< (body vectors) the largest component that was added to it
-      real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
+      real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) the unit vector e with its sign
    end type loop_sums_t
 
 contains
 
-   !> Adds the loop from point `point_j` to point `point_i` by the path of the last search. The path begins at the link
-   !> of `point_i`. If there is no `point_j`, it leads to the ground or to a root. Points are added from the origins of
-   !> their links, never the difference of two. The largest one that was added tells which sums are rounding only.
+   !> Adds the loop from point `point_j` to point `point_i` by the path of a search. The path begins at the link of
+   !> `point_i`. Without a `point_j` the path leads to the ground or to a root. A term is a point as a vector from the
+   !> origin of its link, never the difference of two points: the largest term of a sum then tells whether the sum is
+   !> rounding only.
    subroutine add_vector_loop(m, tree, point_i, point_j, search, loops)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
       integer, intent(in) :: point_i         !< the number of the point at which the loop ends
-      integer, intent(in) :: point_j         !< the number of the point at which it begins; 0: the origin of all places
-      type(search_t), intent(in) :: search
-      type(vector_loops_t), intent(inout) :: loops
+      integer, intent(in) :: point_j         !< the number of the point at which it begins; 0: the origin of positions
+      type(search_t), intent(in) :: search   !< with the pairs of the path
+      type(vector_loops_t), intent(inout) :: loops   !< one more is added
       integer :: link, i, exit_point, entry_point, sign_of
 
       link = m%points(point_i)%link
       call add_term([point_i, 0], tree%orientation(link))
       do i = 1, search%length
          associate (k => m%pairs(search%pairs(i)))
-            ! From a place of `link` through the pair to the link at its other end. Ground links are one: the pair may
-            ! be another one's than that of the ground link reached.
+            ! From `link` through the pair to the link at its other end. All ground links are one node: the pair may
+            ! begin at another ground link than the one that the path has reached.
             sign_of = merge(1, -1, node(m, m%points(k%point_i)%link) == node(m, link))
             exit_point = merge(k%point_i, k%point_j, sign_of > 0)
             entry_point = merge(k%point_j, k%point_i, sign_of > 0)
+
             call add_term([-exit_point, 0], tree%orientation(m%points(exit_point)%link))
             if (has_guide(k%kind)) then
                ! P - Q = h n - s e, all in the orientation that the two links share.
@@ -102,7 +106,7 @@ contains
 
    contains
 
-      !> Adds a term to the loop in the making.
+      !> Adds a term to the unfinished loop, as a part of the body vector of its orientation.
       subroutine add_term(term, orientation)
          integer, intent(in) :: term(2)      !< as in `terms`: a point and 0, or 0 and a pair, with their signs
          integer, intent(in) :: orientation  !< the number of the orientation with which it turns; 0: the ground
@@ -123,10 +127,10 @@ contains
          loops%term_vector(loops%term_count) = loops%vector_of(orientation)
       end subroutine add_term
 
-      !> Adds a slide to the loop in the making.
+      !> Adds a slide to the unfinished loop.
       subroutine add_slide(orientation, slide, pair)
          integer, intent(in) :: orientation  !< the number of the orientation with which its guide turns; 0: the ground
-         integer, intent(in) :: slide        !< the number of the slide
+         integer, intent(in) :: slide        !< the number of the slide in the tree; x and y of roots follow the slides
          integer, intent(in) :: pair         !< the number of its pair, with its sign; 0: x or y of a root
 
          loops%slides = loops%slides + 1
@@ -144,23 +148,24 @@ contains
    !> Sums up body vectors and slides of all loops from the numbers of a mechanism.
    pure subroutine assign_sums(m, tree, axes, length, loops, sums)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(in) :: axes
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`, or of a mechanism of equal structure
+      type(axes_t), intent(in) :: axes       !< of `m`
       real(wp), intent(in) :: length         !< unit of length of the sums, in the deck's unit
-      type(vector_loops_t), intent(in) :: loops
-      type(loop_sums_t), intent(inout) :: sums
+      type(vector_loops_t), intent(in) :: loops   !< on this tree
+      type(loop_sums_t), intent(inout) :: sums   !< its lists are allocated; all are set
       real(wp) :: places(2), place(2), more(2), sign_of
       integer :: i, k
 
       sums%body_vector = 0.0_wp
       sums%largest = 0.0_wp
       do i = 1, loops%count
-         ! The places of ground links are summed apart from their points. Between points of one link they cancel,
-         ! wherever that stands, and leave no rounding of their size.
+         ! The positions of ground links are summed apart from their points. Between two points of one ground link
+         ! they cancel, however large they are, and leave no rounding of their size.
          places = 0.0_wp
          do k = loops%first_term(i), loops%first_term(i + 1) - 1
             associate (v => loops%term_vector(k), point => abs(loops%terms(1, k)), pair => abs(loops%terms(2, k)))
                sign_of = real(sign(1, sum(loops%terms(:, k))), wp)
+
                place = 0.0_wp
                if (point == 0) then
                   more = sign_of*m%pairs(pair)%offset*guide(m, axes, pair, across=.true.)
@@ -194,8 +199,8 @@ contains
       end do
    end subroutine assign_sums
 
-   !> Tells whether a sum of body vectors that cancel is rounding only. Rounding would put an angle into equations that
-   !> do not hold it.
+   !> Tells whether a body vector is rounding only: its terms cancel. Reason: rounding would put an angle into equations
+   !> that do not hold this angle. Sum and terms may be rounded by 8 units of the largest term.
    pure logical function vanishes(sums, k)
       type(loop_sums_t), intent(in) :: sums
       integer, intent(in) :: k   !< the number of the body vector
@@ -203,14 +208,15 @@ contains
       vanishes = all(abs(sums%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*sums%largest(k))
    end function vanishes
 
-   !> Finds the pairs on a short path between two links that are joined. The search is breadth first from both ends in
-   !> turn. The ground ends a path and is never searched level by level, since all links may be joined to it.
+   !> Finds the pairs on a short path between two links that open pairs join: search%pairs(:search%length), none if both
+   !> links are one node. The search is breadth first from both ends in turn. It does not go on from the ground, since
+   !> all links may be joined to the ground.
    subroutine find_path(m, tree, i, j, search)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
       integer, intent(in) :: i               !< the number of the link at which the path begins
       integer, intent(in) :: j               !< the number of the link at which it ends
-      type(search_t), intent(inout) :: search
+      type(search_t), intent(inout) :: search   !< with the open pairs
       integer :: first(2), last(2), side, meeting
 
       search%number = search%number + 1
@@ -233,7 +239,7 @@ contains
 
    contains
 
-      !> Searches one level more from an end.
+      !> Searches one level more from an end, up to the node at which the two searches meet.
       subroutine go_on(side)
          integer, intent(in) :: side         !< 1: from link `i`; 2: from link `j`
          integer :: n, level_end, k, p, link
@@ -250,7 +256,7 @@ contains
          first(side) = level_end + 1
       end subroutine go_on
 
-      !> Notes that the search has come to a node.
+      !> Records that the search has come to a node; if the search from the other end has been there, both have met.
       subroutine visit(side, n, pair)
          integer, intent(in) :: side         !< the end from which it comes: 1 or 2
          integer, intent(in) :: n            !< the number of the node
@@ -265,7 +271,7 @@ contains
          search%queue(last(side), side) = n
       end subroutine visit
 
-      !> Appends the pairs from the meeting node back to the node where a search began.
+      !> Appends to the path the pairs from the meeting node back to the node at which a search began.
       subroutine collect(side, goal)
          integer, intent(in) :: side         !< the end at which it began: 1 or 2
          integer, intent(in) :: goal         !< the number of that node
@@ -283,7 +289,7 @@ contains
       end subroutine collect
    end subroutine find_path
 
-   !> Gives the number of a link's node: 0 for every ground link.
+   !> Gives the number of a link's node: the link's own number, 0 for every ground link.
    pure integer function node(m, link)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link   !< its number
