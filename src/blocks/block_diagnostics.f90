@@ -1,4 +1,4 @@
-!> Diagnostics: of the first motion, of a limit, and of singular positions.
+!> Diagnostics: of the first motion, of a limit of motion, and of singular positions.
 module block_diagnostics
    use kinds, only: wp
    use drive_path, only: drive_path_t, drive_at
@@ -19,41 +19,40 @@ module block_diagnostics
    public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, &
       links_of
 
-   !> An estimated angle that is off by more, in rad, is worth a diagnostic: the assembly may not be the one that was
-   !> meant.
+   !> rad: an estimated angle that is off by more gets a diagnostic: another assembly may have been meant.
    real(wp), parameter :: far_estimate = 1.0_wp
    !> A limit is reported if it is no further than this part of the step that could not be made.
    real(wp), parameter, public :: near_limit_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
-   !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
+   !> At its own limit a block is nearly singular: its least pivot is below this part of the Lipschitz constant.
    real(wp), parameter :: near_singular_pivot = 0.05_wp
-   !> There an unknown is faster than the drives, by more than this factor.
+   !> At its own limit an unknown of a block is faster than the drives by more than this factor.
    real(wp), parameter :: much_faster = 10.0_wp
-   !> A limit is another block's, and nearer, if its time left is below this part.
+   !> Of two blocks with limits the later in solving order counts only if its time left is below this part of the other.
    real(wp), parameter :: much_nearer = 0.5_wp
-   !> A slide on its way to infinity is so many units of its loop long,
+   !> A slide s on its way to infinity is at least this long, in units of its loop.
    real(wp), parameter :: far_slide = 10.0_wp
-   !> and s s''/s'^2, which is 2 at a pole, differs from 2 by no more than this.
+   !> For a slide on its way to infinity s s''/s'^2, which is 2 at a pole, differs from 2 by no more than this.
    real(wp), parameter :: pole_tolerance = 0.2_wp
-   !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
-   !> its distance in time.
+   !> Body vectors with a smaller sine between them are in line. Reason: the last motion before a limit is off in angle
+   !> by about the root of its distance in time, `near_limit_part`.
    real(wp), parameter :: in_line_sine = 1.0e-3_wp
 
 contains
 
-   !> Lists the diagnostics of the first motion:
+   !> Lists the diagnostics of the first motion, in this order:
    !>
-   !> - the redundant equations,
-   !> - the links that can still move, if the Jacobian has no inverse,
-   !> - the blocks of which another assembly is about as near to the initial guess, or may be nearer,
-   !> - the angle that was estimated the worst.
+   !> - each pair and drive with redundant equations,
+   !> - if a Jacobian has no inverse: the links that can still move,
+   !> - otherwise each block of which another assembly is about as near to the initial guess, or may be nearer,
+   !> - the link whose angle was estimated the worst, if it is off by more than `far_estimate`.
    function start_diagnostics(b, x, guess, s, found, singular) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(guess_t), intent(in) :: guess
-      type(state_t), intent(in) :: s         !< of the first motion
+      type(guess_t), intent(in) :: guess     !< the initial guess, and how each block's position was chosen
+      type(state_t), intent(in) :: s         !< the first motion
       type(motion_t), intent(in) :: found    !< of its links
       logical, intent(in) :: singular        !< some Jacobian has no inverse
-      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t), allocatable :: list(:)   !< (any number)
       real(wp) :: off(size(found%position, 2))
       type(diagnostic_t) :: r
       integer, allocatable :: rows(:)
@@ -61,7 +60,7 @@ contains
 
       allocate (list(0))
       if (b%redundant > 0) then
-         ! Each pair and drive with redundant equations, once, and how many it has.
+         ! Each pair and drive with redundant equations once, with their number.
          rows = redundant_rows(b, x, 1, s)
          do k = size(rows), 1, -1
             r = diagnostic_t(kind=diagnostic_redundant, pair=b%rows(rows(k))%pair, drive=b%rows(rows(k))%drive)
@@ -90,13 +89,14 @@ contains
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
 
-   !> Adds the links that can move in a block, and those that are moved by them, if there are any.
+   !> Adds a diagnostic about the links that can move in a block although no drive does, and the links that hang from
+   !> them, if there are any.
    subroutine add_mobility(b, x, s, i, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< with a singular position
       integer, intent(in) :: i               !< the number of the block
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< one more, or as before
       logical, allocatable :: moves(:), moved(:)
       integer :: k
 
@@ -113,7 +113,8 @@ contains
       list = [list, new_diagnostic(diagnostic_mobile, moved)]
    end subroutine add_mobility
 
-   !> Tells which links a block moves (links): those whose angle is its unknown; if there is none, those that slide.
+   !> Tells which links a block moves (links): those whose angle is an unknown of the block; if there is none, those
+   !> whose slide is.
    pure function links_of(b, x, i) result(chosen)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -130,7 +131,7 @@ contains
       end associate
    end function links_of
 
-   !> Tells which links have their angles among some unknowns (links).
+   !> Tells which links have their angle among given unknowns (links).
    pure function links_with(b, unknowns) result(chosen)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: unknowns(:)     !< (any number) their numbers
@@ -143,18 +144,18 @@ contains
       end do
    end function links_with
 
-   !> Finds the limit of the motion that is followed, none or one: that of the block that comes to one first. Blocks
-   !> that build on it come to it as well, at an equal time but for an error of higher order. If the times left of two
-   !> blocks do not differ by the factor `much_nearer`, the first in solving order counts.
+   !> Finds the limit of a motion: the nearest limit of its blocks. Blocks that build on a block come to its limit as
+   !> well, at an equal time but for an error of higher order. If the times left of two blocks do not differ by the
+   !> factor `much_nearer`, the first in solving order counts.
    function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(history_t), intent(in) :: history
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: t              !< time before which the limit is looked for
+      type(history_t), intent(in) :: history   !< with the last motion accepted; without a motion there is no limit
+      type(state_t), intent(in) :: s         !< with the rates of the drives
+      real(wp), intent(in) :: t              !< the parameter of the path that could not be reached
       logical, intent(in) :: creeps          !< many substeps have come so near that a slide's infinity may be after `t`
-      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t), allocatable :: list(:)   !< (0 or 1) with links, time, and the first drive and its value
       type(diagnostic_t) :: r
       real(wp) :: left, nearest, f(3)
       logical :: moves(0:size(path%laws))
@@ -177,8 +178,8 @@ contains
       r%in_line = is_in_line(b, x, i, r, history%past%value)
       r%t = history%t(0) + nearest
 
-      ! The first drive that moves the block there, itself or through those on which it builds; if all stand still, the
-      ! first that could.
+      ! The first drive that moves the block there, directly or through blocks on which it builds; if all these drives
+      ! rest, the first of them.
       moves = .false.
       associate (below => blocks_below(b, i))
          do d = 1, size(below)
@@ -187,6 +188,7 @@ contains
             end associate
          end do
       end associate
+
       do d = 1, size(path%laws)
          if (.not. moves(d)) cycle
          f = drive_at(path, d, r%t)
@@ -200,10 +202,10 @@ contains
 
    contains
 
-      !> Gives the time from the motion that is followed to the limit t* of a block, if it is near; otherwise 0. Close
-      !> to t* the fastest unknown is x* + c sqrt(t* - t): t* - t = x'/(2 x''), with an error of higher order. A block
-      !> far from singular with such accelerations only follows another, perhaps near a change point. There
-      !> accelerations may be rounding, while no velocity is much larger than those of the drives.
+      !> Gives the time from the last motion to the limit t* of a block, if the limit is near; otherwise 0. Close to t*
+      !> the fastest unknown x is x* + c sqrt(t* - t): t* - t = x'/(2 x''), with an error of higher order. A block that
+      !> is far from singular only follows another block, and has no limit of its own. Near a change point accelerations
+      !> may be rounding: no velocity is then much larger than the velocities of the drives.
       pure real(wp) function time_to_limit(i) result(left)
          integer, intent(in) :: i            !< the number of the block
          integer :: fastest
@@ -221,9 +223,9 @@ contains
          end associate
       end function time_to_limit
 
-      !> Gives the time from the motion that is followed to the instant t* at which a slide of a block is infinite; 0:
-      !> there is none. Its guide comes to be parallel to another, at `t` or before. Close to t* the slide s is c/(t* -
-      !> t) and a constant: t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide is the best guide.
+      !> Gives the time from the last motion to the instant t* at which a slide of a block is infinite, since two guides
+      !> become parallel; 0 if there is no such instant up to `t`, or after it if `creeps`. Close to t* the slide s is
+      !> c/(t* - t) plus a constant: t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide counts.
       pure real(wp) function time_to_infinity(i) result(left)
          integer, intent(in) :: i            !< the number of the block
          real(wp) :: to_go, longest
@@ -247,15 +249,15 @@ contains
 
    end function limit_diagnostic
 
-   !> Finds which links have velocities in a singular position, and its kind. It is a dead point if some block has one,
-   !> otherwise a change point if some block has one. The links are those of the first such block; it is found whether
-   !> they are collinear.
+   !> Finds which links have velocities at a singular position, and the kind of the position. It is a dead point if some
+   !> block has one, otherwise a change point if some block has one, otherwise unclear. The links of the first such
+   !> block are recorded, and whether they are collinear.
    subroutine get_link_flags(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< with the singular position
       logical, intent(in) :: all_at_once     !< all equations are solved at once, and have one Jacobian
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found   !< link_known, link_flag, singularity and singular_links are set
       type(diagnostic_t) :: r
       integer :: kinds(size(b%list)), i
 
@@ -269,8 +271,8 @@ contains
       found%singular_links = r
    end subroutine get_link_flags
 
-   !> Judges a position for each block (blocks): one of singular_unclear, ...; -1 if the block is not singular, or
-   !> builds on a singular one, and has no right-hand side of its own for this reason.
+   !> Finds the kind of a position for each block (blocks): singular_unclear, ...; -1 if the block is not singular. The
+   !> kind is -1 also if the block builds on a singular block: without the velocities there it has no right-hand side.
    function judge_blocks(b, x, s) result(found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -289,14 +291,14 @@ contains
       end do
    end function judge_blocks
 
-   !> Lists a diagnostic for each block that has its change point at an instant without velocities: each of the two
-   !> branches has its own. There is none if a block is singular there in another way.
+   !> Lists a diagnostic for each block that has a change point at an instant without velocities: each of the two
+   !> branches has its own velocities. The list is empty if a block is singular there in another way.
    function change_diagnostics(b, x, s, t) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< the motion found last, without velocities
-      real(wp), intent(in) :: t              !< its time
-      type(diagnostic_t), allocatable :: list(:)
+      real(wp), intent(in) :: t              !< its time, in the deck's unit
+      type(diagnostic_t), allocatable :: list(:)   !< (any number)
       integer :: kinds(size(b%list)), i
 
       kinds = judge_blocks(b, x, s)
@@ -312,21 +314,21 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of its block
-      real(wp), intent(in) :: t              !< its time
+      real(wp), intent(in) :: t              !< its time, in the deck's unit
 
       r = new_diagnostic(diagnostic_change, links_of(b, x, i))
       r%t = t
       r%here = .true.
    end function diagnostic_at_change
 
-   !> Tells whether the two links of a diagnostic are in line: a block moves only these, they share a revolute pair, and
-   !> their body vectors are parallel.
+   !> Tells whether the links of a diagnostic are two that are in line: they share a revolute pair, and all body vectors
+   !> that angles of their block rotate are parallel.
    pure logical function is_in_line(b, x, i, diagnostic, value)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(diagnostic_t), intent(in) :: diagnostic
-      real(wp), intent(in) :: value(0:)      !< (0:unknowns) rad or unit of the loop
+      type(diagnostic_t), intent(in) :: diagnostic   !< with the links that the block moves
+      real(wp), intent(in) :: value(0:)      !< (0:unknowns) values, rad or unit of the loop
       real(wp), allocatable :: angle(:)
       integer :: m, k
 

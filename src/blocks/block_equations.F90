@@ -1,6 +1,6 @@
 !> The equations of one block at a state: residual and Jacobian; and the right-hand sides for velocities and
-!> accelerations, the known part of the first and second derivatives of the equations with respect to time. Their text
-!> is equations.inc, here compiled for reals.
+!> accelerations, the parts of the first and second derivatives of the equations with respect to time that are known
+!> before. Their text is equations.inc, here compiled for reals.
 !>
 !> With u_k = R(phi_k) d_k and u_k' its quarter turn, a loop has the closure error
 !>    g = g_0 + sum_k u_k + sum_m s_m R e_m,      dg/dphi_k = u_k',  dg/ds_m = R e_m
@@ -28,23 +28,23 @@ module block_equations
 
 contains
 
-   !> Finds what earlier blocks give to the loops of a block: place, velocity, acceleration.
+   !> Finds the part of the loops of a block that earlier blocks give, with velocity and acceleration.
    pure subroutine find_known_parts(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s      !< with the motion of earlier blocks; `known` of the loops is set
 
       call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
    end subroutine find_known_parts
 
-   !> Assembles all of the Jacobian of a block at a state, zeros as well, and its residual.
+   !> Assembles the dense Jacobian of a block at a state, and its residuals.
    pure subroutine assemble_dense(b, x, i, s, a, residuals)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *)   !< (rows, n)
+      integer, intent(in) :: i               !< the number of the block, which is not explicit
+      type(state_t), intent(inout) :: s      !< with values and given parts; rotated vectors of the block are set
+      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *)   !< (rows, n) the Jacobian, zeros included
       real(wp), intent(inout) :: residuals(*)   !< (rows) unit of the loop or rad
       real(wp) :: v(b%list(i)%shape%rows)
       real(wp), allocatable :: entries(:)
@@ -71,15 +71,14 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> Finds the right-hand side for the velocities of a block or, once these are known, its accelerations: the
-   !> derivatives of the drives less the known part. Closure errors, directions and rotated body vectors are those of
-   !> the last assembly.
+   !> Finds the right-hand side for the velocities of a block or, if these are set, for its accelerations: the
+   !> derivatives of the drives minus the parts of the derivatives of the equations that are known before.
    pure subroutine right_hand_side(b, x, i, order, s, right_side)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       integer, intent(in) :: order           !< 1: velocities, 2: accelerations
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the rotated vectors of the last assembly of the block
       real(wp), intent(inout) :: right_side(*)   !< (rows) unit of the loop or rad, by time or its square
       integer :: m
 

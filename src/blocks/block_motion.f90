@@ -19,11 +19,13 @@ module block_motion
 
 contains
 
-   !> Finds which blocks are solved for the requests of a mechanism, and the chain of the links that these ask for.
+   !> Finds which blocks are solved for the requests of a mechanism, the drives of its ratios, and the chain of its
+   !> links: those that the requests need come first. If the structure is not solvable, only tolerance and ratios are
+   !> set.
    subroutine select_solved_blocks(m, b, x)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(inout) :: b
-      type(geometry_t), intent(inout) :: x   !< of the mechanism
+      type(blocks_t), intent(inout) :: b     !< of `m`; needed, moving, ratios, joint and is_found are set
+      type(geometry_t), intent(inout) :: x   !< of `m`; tolerance and chain are set
       logical :: need(0:b%unknowns)
       integer :: i
 
@@ -34,8 +36,8 @@ contains
       if (.not. b%solvable) return
       x%chain = new_chain(m, b, x, wanted_links(m))
 
-      ! Needed are the blocks that move the links asked for, and those whose redundant equations could contradict one
-      ! another.
+      ! Needed are the blocks that move the links of the requests, and those whose redundant equations could contradict
+      ! one another.
       need = .false.
       do i = 1, x%chain%wanted
          associate (h => x%chain%links(i))
@@ -43,9 +45,10 @@ contains
          end associate
       end do
       b%needed = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
-      ! A run is a period if all links return on which those asked for depend.
+      ! With extremes the chain has all links that move with the needed unknowns: a run is a period only if all return.
       if (any(m%requests%extremes)) x%chain = new_chain(m, b, x, wanted_links(m) .or. need(b%tree%orientation))
       b%moving = pack(b%needed, moving_blocks(b, b%needed))
+
       b%is_found = wanted_links(m) .and. b%tree%orientation > 0
       do i = 1, size(m%links)
          if (b%is_found(i)) b%is_found(i) = .not. b%list(b%block_of(b%tree%orientation(i)))%explicit
@@ -56,14 +59,14 @@ contains
       end associate
    end subroutine select_solved_blocks
 
-   !> Gives a geometry and the path of its drives the numbers of a mechanism. If the numbers do not fit, the geometry is
-   !> as `evaluate_geometry` leaves it.
+   !> Gives a geometry and the path of its drives the numbers of a mechanism. If the numbers do not fit the structure,
+   !> the geometry leaves out the unknowns and body vectors that the structure leaves out.
    subroutine assign_geometry(m, b, x, path, fits)
       type(mechanism_t), intent(in) :: m     !< with the links, points, pairs and drives of which the blocks were made
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(inout) :: x
-      type(drive_path_t), intent(inout) :: path
-      logical, intent(out) :: fits           !< the structure serves for them
+      type(blocks_t), intent(in) :: b        !< solvable
+      type(geometry_t), intent(inout) :: x   !< a geometry of `b` with its chain; its cylinders stay
+      type(drive_path_t), intent(inout) :: path   !< laws and units are set
+      logical, intent(out) :: fits           !< the equations of these numbers have the structure `b`
 
       call evaluate_geometry(m, b, x, fits)
       x%tolerance = m%tolerance
@@ -74,9 +77,9 @@ contains
    !> Puts the laws of the drives of a mechanism, and the units of their values, into its path.
    subroutine assign_path(m, b, x, path)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(inout) :: path
+      type(blocks_t), intent(in) :: b        !< of `m`, solvable
+      type(geometry_t), intent(in) :: x      !< of `m`
+      type(drive_path_t), intent(inout) :: path   !< laws and units are set; a leg stays
       integer :: i
 
       path%laws = m%drives
@@ -88,23 +91,23 @@ contains
       end do
    end subroutine assign_path
 
-   !> Finds the motions found%by at a position: one of the drives by which ratios are asked for has the rate 1, and the
-   !> others rest. They are solved as the motion itself, with other values of drives.
+   !> Solves for the motions by single drives at a position: in found%by(d) drive d, by which a ratio is requested, has
+   !> the rate 1, and all other drives rest. `is_known` of a link is false if its rates are not unique, or out of range.
    subroutine get_ratios(b, x, path, is_lost, here, w, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      logical, intent(in) :: is_lost(:)      !< (blocks) without a position, or without unique rates
+      logical, intent(in) :: is_lost(:)      !< (blocks) it has no position, or no unique rates
       type(state_t), intent(in) :: here      !< the position
       type(workspace_t), intent(inout) :: w
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found   !< of all links; found%by is set
       type(motion_t) :: unit
       type(state_t) :: s
       type(solve_report_t) :: c
       integer :: missing(0:b%unknowns), j, k
       logical :: has_rates, finite
 
-      ! Callers have made sure that there are some: a call that does nothing is a part of a step.
+      ! Callers have made sure that ratios are requested: a call that does nothing would cost a part of a step.
       if (.not. allocated(found%by)) allocate (found%by(size(path%laws)))
       unit = new_motion(size(found%position, 2))
       do j = 1, size(b%ratios)
@@ -135,14 +138,15 @@ contains
       end do
    end subroutine get_ratios
 
-   !> Finds which links have velocities in the motion found last, if not all have. If all equations have one Jacobian
-   !> without an inverse, only links that drives move have velocities.
+   !> Flags the links that have no velocities at a singular position: those that a singular block moves, itself or
+   !> through their parents or other blocks. If all equations have one Jacobian without an inverse, only links that
+   !> explicit blocks move have velocities.
    subroutine flag_singular_links(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the position and its singular blocks
       logical, intent(in) :: all_at_once     !< all equations have one Jacobian
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found   !< of all links; link_known and link_flag are set
       integer :: missing(0:b%unknowns), k
 
       missing = missing_nothing
@@ -155,17 +159,17 @@ contains
       call flag_links(x%chain, missing, found)
    end subroutine flag_singular_links
 
-   !> Finds the motion that is certain at a time without a position: of the links that only drives move. `found` has its
-   !> mark already.
+   !> Finds the motion of the links that explicit blocks move, at a time without a position of all blocks. The motion of
+   !> other links is flagged as missing. If the structure is not solvable, nothing is found.
    subroutine get_driven_links(b, x, path, t, w, s, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t              !< time
+      real(wp), intent(in) :: t              !< the parameter of the path, in the deck's unit of time
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(motion_t), intent(inout) :: found
-      type(state_t) :: driven                           !< with numbers for what is lost, too
+      type(state_t), intent(inout) :: s      !< its drives and the unknowns of explicit blocks are set
+      type(motion_t), intent(inout) :: found   !< of all links; link_known and link_flag are set, its own flag stays
+      type(state_t) :: driven                           ! missing unknowns are 0 in it
       integer :: missing(0:b%unknowns), k, i
       logical :: finite
 
@@ -187,21 +191,22 @@ contains
       if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%explicit, s, w, found)
    end subroutine get_driven_links
 
-   !> Records what is missing of the unknowns of a block: what its own equations leave out, and what the blocks on which
-   !> it builds lack.
+   !> Records the missing part of the unknowns of a block: the worse of the part that its own equations leave out and
+   !> the worst part missing of the blocks on which it builds.
    subroutine record_missing(b, i, own, missing)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< the number of the block
-      integer, intent(in) :: own             !< what its own equations leave out: missing_nothing, ...
-      integer, intent(inout) :: missing(0:)  !< (0:unknowns) missing_nothing, ...
+      integer, intent(in) :: own             !< by its own equations: missing_nothing, ...
+      integer, intent(inout) :: missing(0:)  !< (0:unknowns) missing_nothing, ...; before, 0 for the block's own
 
       missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
    end subroutine record_missing
 
-   !> Tells which blocks a drive moves, itself or through those on which they build (size(list)).
+   !> Tells of each block of a list (blocks of the list) whether a drive moves it, directly or through blocks on which
+   !> it builds.
    pure function moving_blocks(b, list) result(moving)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)   !< (any number) blocks with all on which they build, in solving order
+      integer, intent(in) :: list(:)   !< (any number) numbers of blocks with all on which they build, in solving order
       logical :: moving(size(list))
       integer :: moves(0:b%unknowns), k
 

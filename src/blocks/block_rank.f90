@@ -1,5 +1,6 @@
-!> The rank of a block's Jacobian by its singular values (DGESVD), if equations are too many or if it has no inverse:
-!> redundant equations, and unknowns that can still move. With y J = 0 the equations in y depend on one another.
+!> The rank of a block's Jacobian J by its singular values (DGESVD), if equations are redundant or if J has no inverse:
+!> redundant equations, and unknowns that can still move. If y J = 0, the equations with a part in y depend on one
+!> another.
 module block_rank
    use kinds, only: wp
    use lapack, only: geqrf, getrf, gesvd, ormqr
@@ -12,43 +13,45 @@ module block_rank
       relative_sign, residual_of, curvature_of, gauss_newton_step
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
-   !> they vanish is itself known to no more.
+   !> a singular value vanishes is itself known to no more.
    real(wp), parameter :: zero_singular_value = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
-   !> A block with a degree of freedom left is moved by this, in rad and units of the loop, to see whether it follows.
+   !> A block with a degree of freedom left is moved by this, in rad and units of the loop, to find whether it can move:
+   !> far above rounding, small compared with the links.
    real(wp), parameter :: trial_move = 1.0e-3_wp
-   !> The step of second differences, in rad and units of the loop: their roundings are then as large as the terms that
+   !> The step of second differences, in rad and units of the loop: their rounding is then as large as the terms that
    !> they neglect.
    real(wp), parameter, public :: difference_step = sqrt(sqrt(epsilon(1.0_wp)))
    !> A residual below this, in rad or units of the loop, leaves nothing to correct.
    real(wp), parameter :: corrected_residual = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp))
    !> A residual below this is the residual of a position.
    real(wp), parameter :: position_residual = max(1.0e-12_wp, 100.0_wp*corrected_residual)
-   !> The decompositions take the cube of this number of operations.
+   !> Blocks of more rows are not decomposed: the decomposition takes the cube of the rows, some seconds for these.
    integer, parameter :: max_decomposed_rows = 1500
 
-   !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
+   !> The singular value decomposition of a block's Jacobian: J = left diag(s) right.
    type :: svd_t
       integer :: rows = 0, n = 0                  !< equations, unknowns
-      integer :: rank = 0                         !< singular values that are not small
+      integer :: rank = 0                         !< how many singular values are not zero
+      !> (min(rows, n)) Singular values, falling; (rows, rows) left vectors in columns; (n, n) right vectors in rows.
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
-      real(wp), allocatable :: r(:)               !< (rows) the block's residual
+      real(wp), allocatable :: r(:)               !< (rows) the block's residual, rad or units of the loops
    end type svd_t
 
-   !> The columns of two Jacobians are near one another if the cosine between them is larger, and so are their ranges if
-   !> the product of the cosines is larger.
+   !> Two columns of two Jacobians are near one another if the cosine between them is larger (45 degrees), and two
+   !> ranges if the product of the cosines is larger.
    real(wp), parameter :: min_cosine = 0.7_wp
 
 contains
 
-   !> Lists the rows of a block, counted in b%rows, that could be spared: of those that depend on one another the last
-   !> ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left null vectors, its
-   !> rows taken in that order. A block too large for a decomposition has none.
+   !> Lists the redundant rows of a block, counted in b%rows: of rows that depend on one another the last ones of the
+   !> deck, pairs before drives. They are the pivots of Gauss's elimination of the left null vectors, whose rows are
+   !> taken in this order. The list is empty if the block is too large for a decomposition.
    pure function redundant_rows(b, x, i, s) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s         !< with a position
-      integer, allocatable :: list(:)
+      integer, allocatable :: list(:)        !< numbers of rows
       type(svd_t) :: v
       integer, allocatable :: order(:)
       integer :: k, n, c, at
@@ -81,14 +84,14 @@ contains
       end associate
    end function redundant_rows
 
-   !> Tells of which drives one may be too many (drives), if the equations of all blocks are one block, redundant and
-   !> inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations y J = 0
-   !> between the rows of the Jacobian J.
+   !> Tells which drives could be removed to leave one redundant equation fewer (drives), if the redundant equations of
+   !> the first block contradict one another. Such a drive has a part in a vector y with y J = 0, J the Jacobian of the
+   !> first block. There is none without redundant equations, or if the block is too large for a decomposition.
    pure function surplus_drives(b, x, drives, s) result(are)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: drives          !< how many drives there are
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the position that fits best
       !> A smaller part of a drive, of 1 at most, comes from lengths that do not quite fit.
       real(wp), parameter :: least_part = 1.0e-3_wp
       logical :: are(drives)
@@ -105,7 +108,7 @@ contains
       end do
    end function surplus_drives
 
-   !> Tells which unknowns of a block can move (unknowns of the block) although all on which it builds stands still.
+   !> Tells which unknowns of a block can move (unknowns of the block) while all blocks on which it builds stand still.
    pure function moving_unknowns(b, x, i, s) result(moves)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -118,9 +121,9 @@ contains
       call try_to_move(b, x, i, trial_state, moves)
    end function moving_unknowns
 
-   !> Finds which unknowns of a block can move although all on which it builds stands still. The block is moved a little
-   !> along a direction that the Jacobian leaves open, and its equations are solved again: at a dead point they lead
-   !> back to the place it came from, and none can move.
+   !> Finds which unknowns of a block can move while all blocks on which it builds stand still. The block is moved a
+   !> little along the direction of its least singular value, and its equations are solved again: at a dead point they
+   !> lead back to the position before, and no unknown can move. Too large blocks count as fixed.
    pure subroutine try_to_move(b, x, i, s, moves)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -147,7 +150,7 @@ contains
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
    end subroutine try_to_move
 
-   !> Gives the Jacobian (rows*n) of a block, column by column.
+   !> Gives the Jacobian (rows*n) of a block at a state, column by column.
    pure function jacobian_of(b, x, i, s) result(a)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -161,16 +164,15 @@ contains
    end function jacobian_of
 
    !> Tells on which side of its change points a block with more rows than unknowns is: 1 on the side of an earlier
-   !> Jacobian, -1 on the other. This is the sign of the determinant of the earlier Jacobian, transposed, times the
-   !> present one. It is -1 also if columns or ranges of the two have turned so far that the turn could have changed the
-   !> sign. With both Jacobians factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the
-   !> ranges.
+   !> Jacobian, -1 on the other side. This is the sign of det(J_before^T J_now). It is -1 also if columns or ranges of
+   !> the two Jacobians have turned so far that the turn could have changed the sign. With both factored as Q R,
+   !> |det(Q_before^T Q_now)| is the product of the cosines between the ranges.
    pure integer function relative_sign(b, x, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       real(wp), intent(in) :: before(:)      !< (rows*n) the earlier Jacobian, column by column
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the present position
       real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new, both
       real(wp) :: reflections(size(old, 2)), work(64*size(old, 2) + 1), cosines
       integer :: pivots(size(old, 2)), info, k
@@ -195,13 +197,14 @@ contains
       if (.not. cosines >= min_cosine) side = -1
    end function relative_sign
 
-   !> Finds the residual (rows) of the equations of a block at other values of its unknowns.
+   !> Finds the residual (rows) of the equations of a block at given values of its unknowns, in rad or the units of the
+   !> loops.
    pure function residual_of(b, x, i, values, s) result(r)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
-      type(state_t), intent(in) :: s         !< with the values of the other blocks
+      type(state_t), intent(in) :: s         !< with drives, values of earlier blocks, and given parts of the loops
       real(wp) :: r(b%list(i)%shape%rows), a(b%list(i)%shape%rows*b%list(i)%shape%n)
       type(state_t) :: there
 
@@ -210,7 +213,7 @@ contains
       call assemble_dense(b, x, i, there, a, r)
    end function residual_of
 
-   !> Finds w . r''[k, k] of the equations r of a block, by a second difference.
+   !> Finds the second derivative w . r''[k, k] of the equations r of a block along k, by a second difference.
    pure real(wp) function curvature_of(b, x, i, values, left, right, s) result(curvature)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -218,7 +221,7 @@ contains
       real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
       real(wp), intent(in) :: left(:)        !< (rows) w, a unit vector
       real(wp), intent(in) :: right(:)       !< (n) k, a unit vector
-      type(state_t), intent(in) :: s         !< with the values of the other blocks
+      type(state_t), intent(in) :: s         !< with drives, values of earlier blocks, and given parts of the loops
       real(wp) :: ahead, back, here
 
       ahead = dot_product(left, residual_of(b, x, i, values + difference_step*right, s))
@@ -227,13 +230,13 @@ contains
       curvature = (ahead - here + (back - here))/difference_step**2
    end function curvature_of
 
-   !> Makes one step of least length towards the equations of a block (Gauss and Newton), none along a direction that
-   !> the Jacobian leaves open.
+   !> Makes one step of least length towards a position of a block (Gauss and Newton). It has no part along directions
+   !> whose singular value is zero.
    pure subroutine gauss_newton_step(b, x, i, s, residual)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s      !< the values of the block are changed
       real(wp), intent(out) :: residual      !< the largest before the step, in rad or units of the loop
       type(svd_t) :: v
       real(wp), allocatable :: values(:)
@@ -248,7 +251,7 @@ contains
       call set_values(b, i, values, s)
    end subroutine gauss_newton_step
 
-   !> Finds the singular values of the Jacobian of a block.
+   !> Decomposes the Jacobian of a block at a state by its singular values. The residual belongs to the result.
    pure function decomposed(b, x, i, s) result(v)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

@@ -1,14 +1,12 @@
-!> One block: its position by Newton's method, its velocities and accelerations from the factors of its last Jacobian.
+!> The blocks of a list, one by one: positions by Newton's method, rates from the factors of the last Jacobian.
 !>
-!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once. A larger
-!> residual gives a correction first. If this is at the rounding level, the velocities follow from its factors: one
-!> assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one correction d
-!> away leaves errors of order d in the rates: no larger d is accepted. After a larger, but small one the factors serve
-!> again for two unknowns, with the difference of the Jacobians mended: a coarse step needs no second DGESV.
+!> A residual at the rounding level has nothing to correct: DGESV gives the velocities at once. A larger residual gives
+!> a correction d first. If d is at the rounding level, its factors give the velocities: one assembly and one
+!> factorization a step are the rule. A Jacobian d away leaves errors of order d in the rates: no larger d is accepted.
+!> After a larger, but small d the factors of two unknowns serve again, with the difference of the Jacobians corrected.
 !>
-!> If equations are too many, all of them are solved, in the sense of least squares (Gauss and Newton): the equation
-!> that could be spared changes along the motion. The residual that is left, by which they contradict one another, is
-!> the closure error.
+!> Redundant equations are solved by least squares (Gauss and Newton), all of them: the equation that could be spared
+!> changes along the motion. The residual that is left, by which they contradict one another, is the closure error.
 module block_solver
    use assertions, only: asserts, assert
    use kinds, only: wp
@@ -29,9 +27,9 @@ module block_solver
    public :: workspace_t, new_workspace, solve_blocks, solve_block, solve_explicit
    public :: closed_level, step_tolerance, suspicious_pivot
 
-   !> Residuals below this part of the largest value have nothing to correct.
+   !> Residuals below this part of the largest value are its rounding and have nothing to correct.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
-   !> Corrections below this part of their values are at the rounding level.
+   !> Corrections below this part of their values are rounding: of some terms, times |J^-1|.
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
    !> rad: a smaller change of direction is applied without a new sine and cosine: its square is lost in rounding.
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
@@ -40,23 +38,22 @@ module block_solver
    !> Kantorovich ratio from which the inverse is estimated. The ratio takes 1/(least pivot) for |J^-1|: with more than
    !> two unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
    real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp
-   !> The part that excursions of the drives add goes with the square of |J^-1|: it is small below this value over the
-   !> fourth power of the number of unknowns.
+   !> Excursion of the drives times L |J^-1|^2 below which they do not matter; over n^4, for the 1/(least pivot) above.
    real(wp), parameter :: small_amplification = 0.1_wp
-   !> Velocities of which rounding of the position leaves open more than this part are not printed.
+   !> Velocities that rounding of the position makes uncertain by more than this part are not printed.
    real(wp), parameter :: largest_velocity_error = 0.05_wp
-   !> rad: larger angles have few digits after the point.
+   !> rad or units of a loop: the values diverge. Larger angles have few digits after the point.
    real(wp), parameter, public :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
-   integer, parameter :: iteration_limit = 60
-   !> 1 over this, squared, is within the range of reals.
+   integer, parameter :: iteration_limit = 60     !< most take 1 to 10; far from a root they may wander without end
+   !> Smaller pivots count as this: 1 over this, squared, is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
-   !> Room for the widest block. Nothing in it outlives the solution of a block.
+   !> Room for the largest block, in rows and n unknowns. Nothing in it outlives the solution of a block.
    type :: scratch_t
-      real(wp), allocatable :: start(:)           !< the values before the iteration
-      real(wp), allocatable :: surplus(:)         !< the residuals of a block with too many equations
-      real(wp), allocatable :: work(:)
-      integer, allocatable :: pivots(:), iwork(:)
+      real(wp), allocatable :: start(:)           !< (n) the values before the iteration, rad or unit of the loop
+      real(wp), allocatable :: surplus(:)         !< (rows) the residuals of a block with too many equations
+      real(wp), allocatable :: work(:)            !< of LAPACK: `work_length`
+      integer, allocatable :: pivots(:), iwork(:) !< (rows) of LAPACK
       type(nearby_t) :: near                      !< the Jacobian, if `a` holds the factors of a nearby one
       type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
    end type scratch_t
@@ -67,7 +64,7 @@ module block_solver
 
 contains
 
-   !> Makes room for every block.
+   !> Makes a workspace with room for every block.
    pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
       type(workspace_t) :: w
@@ -80,15 +77,15 @@ contains
       allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
-   !> Solves the blocks of a list in turn, up to the first without a position. A block whose Jacobian has no inverse
-   !> there keeps its rates and accelerations.
+   !> Solves the blocks of a list in turn, up to the first without a position, which has its last iterate. A block whose
+   !> Jacobian has no inverse keeps its rates, and its position is refined.
    subroutine solve_blocks(b, x, list, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in), contiguous :: list(:)           !< (any number) numbers of blocks, in solving order
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
-      type(solve_report_t), intent(out) :: convergence      !< how the worst block ended
+      type(solve_report_t), intent(out) :: convergence      !< of all blocks solved
       real(wp) :: ratio
       integer :: k
 
@@ -102,15 +99,15 @@ contains
    end subroutine solve_blocks
 
    !> Solves a block for the rates and accelerations of its unknowns and, if it moves, first for their values. If its
-   !> Jacobian has no inverse there, convergence%singular says so, and rates and accelerations stay.
+   !> Jacobian has no inverse, convergence%singular is true, and rates and accelerations stay.
    subroutine solve_block(b, x, i, moves, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
-      logical, intent(in) :: moves                         !< its values are solved for
+      logical, intent(in) :: moves                         !< its values are solved for; otherwise they are a position
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
-      type(solve_report_t), intent(out) :: convergence      !< how the block ended
+      type(solve_report_t), intent(out) :: convergence      !< of the block
       real(wp) :: ratio
       integer :: k
 
@@ -120,7 +117,7 @@ contains
       convergence%kantorovich_ratio = ratio
    end subroutine solve_block
 
-   !> Solves the next blocks of a list, up to the first without a position or without rates.
+   !> Solves the next blocks of a list, up to the first without a position or without unique rates.
    subroutine solve_next(b, x, list, moves, w, s, k, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -128,21 +125,21 @@ contains
       logical, intent(in) :: moves                         !< their values are solved for
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      integer, intent(inout) :: k                          !< the place in the list of the block solved last
+      integer, intent(inout) :: k                          !< the index in the list of the block solved last
       real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
-      type(solve_report_t), intent(inout) :: convergence    !< how all have ended
+      type(solve_report_t), intent(inout) :: convergence    !< of all blocks so far
 
       call solve_list(b, x, size(list), list, moves, b%list, x%blocks, b%unknown, b%loops, x%loops, b%body_vectors, &
          x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, s%jacobian, &
          s%is_singular, w%a, w%r, w%scratch_t, k, ratio, convergence)
    end subroutine solve_next
 
-   !> Solves a direct block, the own unknown of a drive: nothing to iterate.
+   !> Finds value, rate and acceleration of the unknown of an explicit block, without iteration.
    pure subroutine solve_explicit(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s                    !< with the drives
 
       associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
          call find_direct(row, x%rows(b%list(i)%first_row), s%drive_value, s%u(row%other), s%u(u))
@@ -150,7 +147,8 @@ contains
       end associate
    end subroutine solve_explicit
 
-   !> Solves the next blocks of a list on plain arrays, whose descriptors are read once for all blocks.
+   !> Solves the next blocks of a list, up to the first without a position or without unique rates. Reason for plain
+   !> arrays: their descriptors are read once for all blocks.
    subroutine solve_list(b, x, n, list, moves, blocks, numbers, unknown, loops, loop_numbers, vectors, unrotated, &
       slides, unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, jacobian, &
       is_singular, a, right_sides, scratch, k, ratio, convergence)
@@ -159,6 +157,7 @@ contains
       integer, intent(in) :: n                             !< the length of the list
       integer, intent(in) :: list(n)                       !< numbers of blocks, in solving order
       logical, intent(in) :: moves                         !< their values are solved for
+
       type(block_t), intent(in) :: blocks(*)               !< (blocks)
       type(block_numbers_t), intent(in) :: numbers(*)      !< (blocks)
       integer, intent(in) :: unknown(*)                    !< (unknowns) their numbers, block by block
@@ -171,7 +170,7 @@ contains
       type(equation_row_t), intent(in) :: equations(*)     !< (rows)
       type(row_numbers_t), intent(in) :: constants(*)      !< (rows)
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
-      real(wp), intent(in) :: excursion                    !< off the chords (rad, characteristic lengths)
+      real(wp), intent(in) :: excursion                    !< of the drives off chords (rad, characteristic lengths)
       type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
 
       ! Scratch of the equations, then findings.
@@ -179,13 +178,13 @@ contains
       type(vector_t), intent(inout) :: guide(*)            !< (slides) directions, rotated
       type(loop_state_t), intent(inout) :: now(*)          !< (loops)
       type(jacobian_t), intent(inout) :: jacobian(*)       !< (blocks)
-      logical, intent(inout) :: is_singular(*)             !< (blocks) without rates
-      real(wp), intent(inout) :: a(*)                      !< room for the widest Jacobian
+      logical, intent(inout) :: is_singular(*)             !< (blocks) without unique rates
+      real(wp), intent(inout) :: a(*)                      !< room for the largest Jacobian
       real(wp), intent(inout) :: right_sides(*)            !< room for two right-hand sides
       type(scratch_t), intent(inout) :: scratch
-      integer, intent(inout) :: k                          !< the place in the list of the block solved last
+      integer, intent(inout) :: k                          !< the index in the list of the block solved last
       real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
-      type(solve_report_t), intent(inout) :: convergence    !< how all have ended
+      type(solve_report_t), intent(inout) :: convergence    !< of all blocks so far
       integer :: i
 
       ratio = 0.0_wp
@@ -214,7 +213,7 @@ contains
       end do
    end subroutine solve_list
 
-   !> Solves a block that is not direct by Newton's method.
+   !> Solves a block that is not explicit by Newton's method. Without a position its unknowns have the last iterate.
    subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, unrotated, slides, &
       unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, a, right_sides, scratch, &
       jacobian, is_singular, ratio, convergence)
@@ -223,7 +222,8 @@ contains
       integer, intent(in) :: i                             !< the number of the block
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
-      logical, intent(in) :: moves                         !< its values are solved for
+      logical, intent(in) :: moves                         !< its values are solved for; otherwise they are a position
+
       integer, intent(in) :: unknown(*)                    !< (n) numbers of its unknowns
       type(block_loop_t), intent(in) :: loops(*)           !< (loops of all blocks)
       type(loop_numbers_t), intent(in) :: loop_numbers(*)  !< (loops of all blocks)
@@ -234,7 +234,7 @@ contains
       type(equation_row_t), intent(in) :: equations(*)     !< (rows of all blocks)
       type(row_numbers_t), intent(in) :: constants(*)      !< (rows of all blocks)
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
-      real(wp), intent(in) :: excursion                    !< off the chords (rad, characteristic lengths)
+      real(wp), intent(in) :: excursion                    !< of the drives off chords (rad, characteristic lengths)
       type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
 
       ! Scratch of the equations, then findings.
@@ -244,10 +244,10 @@ contains
       real(wp), intent(inout) :: a(*)                      !< room for the Jacobian; then its factors
       real(wp), intent(inout) :: right_sides(block%shape%rows, 2)   !< residuals, then accelerations; velocities
       type(scratch_t), intent(inout) :: scratch
-      type(jacobian_t), intent(inout) :: jacobian          !< stays if it has no inverse, but for the sign
-      logical, intent(inout) :: is_singular                !< stays if there is no position
-      real(wp), intent(out) :: ratio                       !< Kantorovich ratio
-      type(solve_report_t), intent(inout) :: convergence    !< how the blocks so far have ended
+      type(jacobian_t), intent(inout) :: jacobian          !< stays without a position or an inverse, but for the sign
+      logical, intent(inout) :: is_singular                !< it has no unique rates; stays if there is no position
+      real(wp), intent(out) :: ratio                       !< Kantorovich ratio; 0 if nothing was corrected
+      type(solve_report_t), intent(inout) :: convergence    !< of all blocks so far
       real(wp) :: before, size_of, own_size, cosine, residual, step, change, least, bound
       integer :: rows, n, info, ended, iteration, iterations, side, sign_of, k
       logical :: is_closed, is_right, singular
@@ -319,14 +319,14 @@ contains
          end if
 
          step = largest_size(n, right_sides)
-         ! Only rounding is left to correct, and the position stays; among equations that contradict one another this is
-         ! their residual. A step so small that no longer falls is rounding, whatever sums have left it.
+         ! Only rounding is left to correct, and the position stays; of equations that contradict one another the
+         ! residual is left. A step so small that no longer falls is rounding, whatever sums have left the rounding.
          if (step > 0.5_wp*before .and. (step <= small_turn .or. &
             residual <= rounding_level*max(size_of, numbers%coarse))) then
             ended = ended_stalled
          else
-            ! The correction was right if it was at the rounding level of each value, or within the tolerance. An angle
-            ! is not, if a slide is long.
+            ! The iteration has converged if each correction is at the rounding level of its own value, or within the
+            ! tolerance: a long slide does not excuse the correction of an angle.
             size_of = 1.0_wp
             is_right = .true.
             do k = 1, n
@@ -413,17 +413,17 @@ contains
 
    contains
 
-      !> Finds the sign of the determinant and the Kantorovich ratio, and whether rounding leaves the velocities open.
-      !> Let B be |J^-1|, h the residual that rounding leaves, L the Lipschitz constant. The position is known to B h,
-      !> the Jacobian to L B h, the velocities to B times that. Newton and Kantorovich: there is one root only if B L
-      !> change is below 1/2.
+      !> Finds `sign_of`, `ratio`, `least`, `bound`, and in `singular` whether rounding leaves the velocities
+      !> undetermined. Let B be |J^-1|, h the residual that rounding leaves, L the Lipschitz constant. The position is
+      !> known to B h, the Jacobian to L B h, the velocities to B (L B h). Newton and Kantorovich: there is only one
+      !> root if B L change is below 1/2.
       subroutine certify_root()
          real(wp) :: largest, inverse
          logical :: suspicious
 
          call pivot_range(block%shape, a, scratch%pivots, least, largest, sign_of, scratch%sparse)
          if (block%shape%pattern > 0) then
-            ! No pivot of a wide block tells how near the Jacobian is to having no inverse.
+            ! No pivot of a large block tells how near the Jacobian is to having no inverse.
             inverse = inverse_norm(block%shape, a, scratch%pivots, scratch%work, scratch%iwork, scratch%sparse)
             least = 1.0_wp/inverse
          end if
@@ -452,7 +452,7 @@ contains
       end subroutine certify_root
    end subroutine solve_arrays
 
-   !> Solves for another right-hand side from the factors.
+   !> Solves linear equations for another right-hand side from the factors.
    subroutine solve_next_side(shape, a, pivots, work, near, sparse, right_side)
       type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)                         !< the factors
@@ -460,7 +460,7 @@ contains
       real(wp), intent(inout) :: work(*)                   !< scratch
       type(nearby_t), intent(in) :: near                   !< the Jacobian, if the factors are those of a nearby one
       type(sparse_factors_t), intent(inout) :: sparse      !< of a sparse Jacobian
-      real(wp), intent(inout) :: right_side(*)             !< (rows) then the solution (n)
+      real(wp), intent(inout) :: right_side(*)             !< (rows) then its first n are the solution
 
       if (near%distance > 0.0_wp) then
          call solve_nearby(near, right_side)
@@ -469,7 +469,7 @@ contains
       end if
    end subroutine solve_next_side
 
-   !> Gives the largest |number|; no number if the last of them is none.
+   !> Gives the largest |number|, 0 of none. NaN if the last number is NaN; after another NaN only later numbers count.
    pure real(wp) function largest_size(n, numbers) result(largest)
       integer, intent(in) :: n                             !< how many numbers there are
       real(wp), intent(in) :: numbers(*)                   !< (n)
@@ -481,16 +481,15 @@ contains
       end do
    end function largest_size
 
-   !> Tells whether rounding leaves the velocities open, with rows and unknowns in sizes of their own, for blocks of
-   !> very different ones. The part of the rows beyond their linear part moves an unknown by a part of its uncertainty
-   !> |J^-1| h that is too large.
+   !> Tells whether rounding leaves velocities undetermined, for blocks of rows and unknowns of very different sizes.
+   !> The part of the rows beyond their linear part moves an unknown by too large a part of its uncertainty |J^-1| h.
    logical function is_beyond_linear(b, x, i, n, unknowns, now, a, pivots, work, sparse) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
       integer, intent(in) :: n                             !< its unknowns
-      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
-      type(loop_state_t), intent(in) :: now(*)             !< (loops)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)   !< with the position
+      type(loop_state_t), intent(in) :: now(*)             !< (loops) at the position
       real(wp), intent(in) :: a(*)                         !< the factors of its Jacobian
       integer, intent(in) :: pivots(*)                     !< (n) of the factors
       real(wp), intent(inout) :: work(*)                   !< scratch
@@ -505,16 +504,15 @@ contains
    end function is_beyond_linear
 
    !> Tells whether the redundant equations of a block contradict its rates or accelerations. Their residuals are
-   !> compared with the largest rate and acceleration of all that goes into the equations: angles, slides, drives, known
-   !> or not.
+   !> compared with the largest rate and acceleration of the angles, slides and drives in its equations.
    pure logical function contradict_rates(b, i, values, unknowns, left_over, coarse, closing) result(do)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i                             !< the number of the block
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
       type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
       real(wp), intent(in) :: left_over(b%list(i)%shape%rows, 2)   !< accelerations and rates, then their residuals
-      real(wp), intent(in) :: coarse                       !< of the block
-      real(wp), intent(in) :: closing                      !< the closing tolerance (characteristic lengths, rad)
+      real(wp), intent(in) :: coarse                       !< given part over own body vectors, 1 at least
+      real(wp), intent(in) :: closing                      !< the closing tolerance (unit of the loop, rad)
       real(wp) :: largest(2)
       integer :: k
 
@@ -529,7 +527,7 @@ contains
       end associate
    end function contradict_rates
 
-   !> Gives the size (rows) of the numbers that each row of a block rounds, in the unit of its loop.
+   !> Gives the size (rows) of the largest number that each row of a block rounds, in the unit of its loop or rad.
    pure function rounded_sizes(b, x, i, unknowns) result(sizes)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -556,8 +554,8 @@ contains
       end do
    end function rounded_sizes
 
-   !> Bounds d . r'' d (rows) for changes d of the unknowns of a block: twice the part of the rows r beyond their linear
-   !> part. A projection that turns with an angle of the block turns its loop.
+   !> Bounds d . r'' d (rows), in the unit of the loop, for changes d of the unknowns of a block: twice the part of the
+   !> rows r beyond their linear part. The direction of a projection may turn with an angle of the block.
    pure function second_order_bounds(b, x, i, unknowns, now, changes) result(bounds)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

@@ -1,10 +1,10 @@
-!> Branches of a block's motion that cross at a change point: the signs of a change point, and the other branch beyond
-!> it.
+!> Branches of a block's motion that cross at a change point: how a change point is recognized, and the other branch
+!> beyond it.
 !>
 !> Just beyond a change point, at the position x on the branch that goes on smoothly, the Jacobian J has one small
-!> singular value s, with w and k on its left and right. To second order along k
+!> singular value s, with the left vector w and the right vector k. To second order along k
 !>    w . r(x + a k) = a s + a^2 q/2,   q = w . r''[k, k],
-!> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
+!> so that the other branch is at a = -2 s/q. There the determinant has the sign that it had before the change point.
 !>
 !> The motion goes smoothly on, unless a BRANCH card asks for the other branch. A change point passed once is passed
 !> on the same branch again, in either direction: the motion is a function of time.
@@ -24,10 +24,11 @@ module branch_switching
    private
    public :: pass, switch_branch, is_smooth_passage, branch_requests_t, new_branch_requests, decide
 
-   !> A determinant that changes its sign over a substep this short, in rad and lengths, may indicate a change point. It
-   !> does if the prediction was right to so small a part of the substep. Circuits that pass each other at the distance
-   !> d are distinguished from crossing ones if d^2 is above the product of the two, 1E-14.
+   !> A determinant that changes its sign over a substep this short, in rad or units of the loop, may indicate a change
+   !> point.
    real(wp), parameter :: short_substep = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
+   !> It does if the prediction was right to this part of the substep. Circuits that pass each other at the distance d
+   !> are distinguished from crossing ones if d^2 is above right_part*short_substep**2, 1E-14.
    real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp)
    !> A prediction that is off by more than this part of the substep is wrong, whatever rounding may explain.
    real(wp), parameter :: wrong_part = 1.0e-2_wp
@@ -36,36 +37,36 @@ module branch_switching
    !> in which rounding leaves no velocities. Three widths of that zone are enough. With more of them, circuits that do
    !> not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
    real(wp), parameter :: short_pivots = 0.02_wp*short_substep
-   !> Rounding of a prediction near a change point, over the Lipschitz constant and the change and times the square of
-   !> the pivot.
+   !> Rounding of a prediction near a change point is at most this times lipschitz*change/pivot**2.
    real(wp), parameter :: prediction_rounding = 500.0_wp*epsilon(1.0_wp)
-   !> The largest distance at which the other branch is looked for, in rad and units of the loop.
+   !> The largest distance at which the other branch is searched for, in rad and units of the loop: the second order
+   !> holds no further.
    real(wp), parameter :: furthest_branch = 0.05_wp
-   !> The closure error of redundant equations on the other branch, over the second order in its distance, at most.
+   !> The largest closure error of redundant equations on the other branch, as a part of |q| a^2.
    real(wp), parameter :: max_closure_part = 0.01_wp
 
-   !> The listing gives the time of a change point to six digits; so may a card.
+   !> A card may be this part of its time late or early: the listing gives the time of a change point to six digits.
    real(wp), parameter :: card_time_part = 1.0e-5_wp
 
    !> A change point of a block that was passed.
    type :: branch_switch_t
-      integer :: block = 0                        !< its number
-      real(wp) :: t = 0.0_wp                      !< time, in the deck's unit
-      real(wp) :: width = 0.0_wp                  !< the time is known to this
+      integer :: block = 0                        !< the number of the block
+      real(wp) :: t = 0.0_wp                      !< its time, in the deck's unit
+      real(wp) :: width = 0.0_wp                  !< the uncertainty of its time
       logical :: other = .false.                  !< the other branch was taken
    end type branch_switch_t
 
    !> BRANCH cards, and how change points were passed.
    type :: branch_requests_t
       type(branch_request_t), allocatable :: cards(:)   !< in the deck's order
-      logical, allocatable :: used(:)             !< (cards)
-      type(branch_switch_t), allocatable :: branch_switches(:)
-      real(wp), allocatable :: stood_until        !< time to which it stood on a singular position last
+      logical, allocatable :: used(:)             !< (cards) it has been obeyed
+      type(branch_switch_t), allocatable :: branch_switches(:)   !< the change points that were passed, in turn
+      real(wp), allocatable :: stood_until        !< time to which the motion last stood on a singular position
    end type branch_requests_t
 
 contains
 
-   !> Takes the BRANCH cards of a mechanism, none of them used yet.
+   !> Lists the BRANCH cards of a mechanism, none of them used yet.
    pure function new_branch_requests(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(branch_requests_t) :: c
@@ -75,16 +76,17 @@ contains
       allocate (c%used(size(c%cards)), source=.false.)
    end function new_branch_requests
 
-   !> Decides whether a block takes the other branch at its change point between two times. A change point on which the
-   !> motion stood is at the time at which that ended. Of the cards not used yet that name one of the links, or none,
-   !> the one counts whose time was passed first on the way there.
+   !> Decides whether a block takes the other branch at its change point between two times, and records the decision. A
+   !> change point passed before is decided as before. A change point on which the motion stood has the time at which
+   !> the motion left it. Of the cards not used yet that name one of the links, or no link, the card counts whose time
+   !> was passed first.
    pure subroutine decide(requests, block, links, before, t, at, other)
-      type(branch_requests_t), intent(inout) :: requests
-      integer, intent(in) :: block                !< its number
+      type(branch_requests_t), intent(inout) :: requests   !< the card may become used; a change point is added
+      integer, intent(in) :: block                !< the number of the block
       logical, intent(in) :: links(:)             !< (links) the block moves it
-      real(wp), intent(in) :: before, t           !< times, in the deck's unit
-      real(wp), intent(in) :: at                  !< time of the change point, about
-      logical, intent(out) :: other               !< it takes the other branch
+      real(wp), intent(in) :: before, t           !< the two times in the order of the motion, in the deck's unit
+      real(wp), intent(in) :: at                  !< approximate time of the change point, in the deck's unit
+      logical, intent(out) :: other               !< the block takes the other branch
       real(wp) :: way, here
       integer :: i, best
 
@@ -115,16 +117,17 @@ contains
       requests%branch_switches = [requests%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
    end subroutine decide
 
-   !> Passes the change points before the time of the state, each as the BRANCH cards ask for it. If
-   !> convergence%determinant_signs_kept, the motion found last is the one that goes on. Otherwise the list says why
-   !> there is none; it is empty if a determinant has changed its sign without a change point.
+   !> Passes the change points between the latest motion of the history and the state, each as the BRANCH cards request.
+   !> If convergence%determinant_signs_kept, the state is the continuation of the motion. Otherwise there is none, and
+   !> the last diagnostic of the list names the branch that was not found; the list is empty if a determinant has
+   !> changed its sign without a change point.
    subroutine pass(b, x, path, history, w, s, requests, convergence, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(history_t), intent(inout) :: history
+      type(history_t), intent(inout) :: history              !< empty after a switch to another branch
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s                      !< the motion found last
+      type(state_t), intent(inout) :: s                      !< the motion found last; then on the branch requested
       type(branch_requests_t), intent(inout) :: requests
       type(solve_report_t), intent(inout) :: convergence      !< of that motion
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< one for each change point
@@ -134,13 +137,14 @@ contains
 
       allocate (list(0))
       crossed = s%crossed
-      ! A prediction that leaps too far is not solved at all.
+      ! Without a block that has crossed, a prediction leapt too far and was not solved: there is nothing to pass.
       passed = any(crossed) .and. is_smooth_passage(b, x, history, s, convergence%change)
       do k = 1, size(b%moving)
          if (.not. passed) exit
          associate (i => b%moving(k), before => history%t(0), t => s%t)
             if (.not. crossed(i)) cycle
             r = new_diagnostic(diagnostic_change, links_of(b, x, i))
+
             ! The least pivot goes through zero in proportion to the values of the drives.
             r%t = time_at_part(path, before, t, &
                history%jacobian(i)%pivot/(history%jacobian(i)%pivot + s%jacobian(i)%pivot))
@@ -156,15 +160,15 @@ contains
    end subroutine pass
 
    !> Tells whether the motion found last is on the branch that goes on smoothly, also beyond change points. It is if
-   !> the substep was short, and its prediction right to a small part of it. Near a change point rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of the change of the drives, if this is more
-   !> than the predicted change. A longer substep has to be right to a part that is smaller as its square; this
-   !> distinguishes the same circuits.
+   !> the substep was short, and its prediction right to a small part of the substep. Near a change point rounding makes
+   !> the prediction wrong in proportion to lipschitz/pivot^2, as it does the rates, and to the larger of the predicted
+   !> change and the change of the drives. In a longer substep the part is smaller as the inverse square of its length:
+   !> circuits at an equal distance are then distinguished.
    pure logical function is_smooth_passage(b, x, history, s, correction) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(history_t), intent(in) :: history
-      type(state_t), intent(in) :: s                         !< the motion found last
+      type(history_t), intent(in) :: history                 !< with one motion at least
+      type(state_t), intent(in) :: s                         !< the motion found last, with the blocks that have crossed
       real(wp), intent(in) :: correction                     !< of its prediction, in rad or units of the loop
       real(wp), dimension(size(b%moving)) :: lipschitz, rounded
       real(wp) :: right, driven
@@ -183,17 +187,17 @@ contains
       is = correction <= min(right, wrong_part*s%change)
    end function is_smooth_passage
 
-   !> Puts a block on its other branch, close to a change point or dead point, and then all that builds on it. On that
-   !> branch the determinant has the other sign. The motions before are no guide from there.
+   !> Puts a block on its other branch, close to a change point or dead point, and then the blocks that build on it. On
+   !> the other branch the determinant has the other sign. The motions before do not predict this branch.
    subroutine switch_branch(b, x, history, w, s, i, convergence, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(history_t), intent(inout) :: history
+      type(history_t), intent(inout) :: history              !< emptied, unless the branch is too far
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s                      !< the motion found last; then the one on that branch
+      type(state_t), intent(inout) :: s                      !< the motion found last; then on the branch, if found
       integer, intent(in) :: i                               !< the number of the block
-      type(solve_report_t), intent(inout) :: convergence      !< how the solution there ended
-      logical, intent(out) :: found                          !< it is on that branch
+      type(solve_report_t), intent(inout) :: convergence      !< of the solution there; stays if the branch is too far
+      logical, intent(out) :: found                          !< the state is on the other branch
       type(svd_t) :: v
       real(wp), dimension(b%list(i)%shape%n) :: direction, here
       real(wp) :: curvature, away, correction

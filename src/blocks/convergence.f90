@@ -1,5 +1,5 @@
-!> How an iteration for a position ended: the record that all methods give back; and the closure error by which the
-!> equations of a redundant block contradict one another, in position and in its derivatives.
+!> The report of a solution for a position, which all methods give back: how the iteration ended, and the closure error
+!> by which the equations of a redundant block contradict one another, in position and in its derivatives.
 module convergence
    use kinds, only: wp
    use blocks, only: blocks_t, geometry_t
@@ -10,62 +10,64 @@ module convergence
       record_closure_error, contradict
 
    !> The largest change of a predicted position over the distance of the next root, by the Jacobian and its Lipschitz
-   !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
-   !> with the sign of the determinant that this one had before.
+   !> constant, that still counts as the continuation of a motion. Near a change point another branch passes close by,
+   !> where the determinant has the sign that it had on this branch before: a tenth keeps well away from it.
    real(wp), parameter, public :: max_kantorovich_ratio = 0.1_wp
    !> Residuals above this part of the largest value are more than rounding of angles and of their sines.
    real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
-   !> Closure errors that differ by less than this part are equal.
+   !> Closure errors that differ by less than this part are equal: rounding shall not choose the pair that is named.
    real(wp), parameter :: equal_opening_part = 1.0e-4_wp
-   !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
+   !> Redundant equations may have this closure error, in units of their loops and radians, as data of 11 digits do.
    real(wp), parameter, public :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
-   !> Rates may contradict one another by this part of them, which a condition makes larger.
+   !> Their rates may have residuals of this part of the largest rate: the closure error, times a condition of 100.
    real(wp), parameter :: open_rate_part = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
-   !> Within a closing tolerance rates may contradict one another by more: by so many times that tolerance.
+   !> With a closing tolerance the residuals of rates may be this many times the tolerance: the condition again.
    real(wp), parameter :: rates_per_closing = 100.0_wp
-   !> They never do by more than this part: equations that differ so much in their rates hold the mechanism.
+   !> With a closing tolerance they are never more than this part: equations whose rates differ so much stop the links.
    real(wp), parameter :: held_rate_part = 0.1_wp
-   !> The body vectors of a loop may be so short, compared with the known part, that rounding opens the loop by more: by
-   !> so many roundings of the known part.
+   !> If the body vectors of a loop are much shorter than its given part, closure errors and residuals of rates may be
+   !> this many roundings of the given part.
    real(wp), parameter :: loop_roundings = 64.0_wp, rate_roundings = 4096.0_wp
 
+   ! How an iteration ended.
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
    integer, parameter :: ended_singular = 3    !< the matrix has no inverse
    integer, parameter :: ended_limit = 4       !< too many iterations
-   integer, parameter :: ended_diverged = 5    !< the values left all bounds
-   integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
-   integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
-   integer, parameter :: ended_elsewhere = 8   !< at another assembly; open%pair: the cylinder below 0
+   integer, parameter :: ended_diverged = 5    !< a value has exceeded all bounds
+   integer, parameter :: ended_inconsistent = 6        !< redundant equations contradict one another
+   integer, parameter :: ended_unsought = 7    !< there is no position within reach: no iteration was made
+   integer, parameter :: ended_elsewhere = 8   !< at another assembly; open%pair: the cylinder with a length below 0
 
-   !> By how much an equation is not satisfied.
+   !> The residual of an equation, or of the two equations of a revolute pair.
    type :: closure_error_t
-      real(wp) :: value = 0.0_wp               !< in the unit of length or rad
-      logical :: is_angle = .false.
+      real(wp) :: value = 0.0_wp               !< in the unit of the loop, or rad
+      logical :: is_angle = .false.            !< in rad, not a length
       real(wp) :: unit = 1.0_wp                !< the loop's unit of length, in the one of the mechanism
       real(wp) :: level = 1.0_wp               !< its rows are rounded so many times as coarsely as usual, 1 at least
-      integer :: pair = 0, drive = 0           !< whose equation it is; 0: none
+      integer :: pair = 0, drive = 0           !< number of the pair or drive that has the equation; 0: none
    end type closure_error_t
 
-   !> How a position was solved for.
+   !> The report of a solution for a position. Values and residuals are in rad or units of their loops; METHOD DENSE and
+   !> METHOD MATRIX divide residual and step by the size of the coordinates.
    type :: solve_report_t
       integer :: ended = ended_limit           !< ended_converged, ...
-      integer :: iterations = 0                !< in all
-      real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
-      real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
-      integer :: determinant = 0               !< its sign
-      real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: of its factors, over the largest
+      integer :: iterations = 0                !< the largest number of a block
+      real(wp) :: residual = 0.0_wp            !< the largest of the last iteration
+      real(wp) :: step = 0.0_wp                !< the largest correction of the last iteration
+      integer :: determinant = 0               !< sign of the product of the determinants: 1 or -1; 0: no position
+      real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: the least pivot over the largest
       real(wp) :: change = 0.0_wp              !< the largest change of a value from the initial guess
-      real(wp) :: kantorovich_ratio = 0.0_wp   !< that change over the distance within which the root is the only one
-      real(wp) :: amplification = 0.0_wp              !< of that ratio with the excursion of the drives
-      logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
-      logical :: determinant_signs_kept = .true.          !< the determinants have those of the motion that is followed
+      real(wp) :: kantorovich_ratio = 0.0_wp   !< largest ratio of a change to the distance in which the root is single
+      real(wp) :: amplification = 0.0_wp              !< by which the ratio grows with the excursion of the drives
+      logical :: is_certain = .false.          !< so exact a prediction in so short a substep leaves no other branch
+      logical :: determinant_signs_kept = .true.          !< they are the signs of the motion that is followed
       logical :: singular = .false.            !< a position was found, and its Jacobian has no inverse
-      type(closure_error_t) :: open            !< the equation that is open the most
-      logical :: rates_inconsistent = .false.          !< they agree in position, but not in its derivatives
+      type(closure_error_t) :: open            !< the equation with the largest closure error
+      logical :: rates_inconsistent = .false.          !< redundant equations agree in position, but not in their rates
    end type solve_report_t
 
-   !> A record in which nothing is gathered yet.
+   !> The report of no blocks, to which reports of blocks are added.
    type(solve_report_t), parameter :: nothing_gathered = solve_report_t(ended=ended_converged, determinant=1)
 
 contains
@@ -77,9 +79,11 @@ contains
       is_solved = convergence%ended == ended_converged .or. convergence%ended == ended_stalled
    end function is_solved
 
-   !> Adds a record to the record of the whole: the largest of each count, the worst of each ending.
+   !> Adds the report of a block to the report of all: the largest iterations, residual, step and closure error, the
+   !> product of the determinants, the last ending that is not ended_converged. A block at another assembly names its
+   !> cylinder. Changes and ratios are not added.
    pure subroutine gather(one, convergence)
-      type(solve_report_t), intent(in) :: one                !< of a block
+      type(solve_report_t), intent(in) :: one                !< of the block
       type(solve_report_t), intent(inout) :: convergence     !< of all blocks so far
 
       if (one%ended /= ended_converged) convergence%ended = one%ended
@@ -92,7 +96,7 @@ contains
       convergence%rates_inconsistent = convergence%rates_inconsistent .or. one%rates_inconsistent
    end subroutine gather
 
-   !> Gives the word for how an iteration ended.
+   !> Gives the word, printed in the log, for the way in which an iteration ended.
    pure function ending(convergence) result(word)
       type(solve_report_t), intent(in) :: convergence
       character(9) :: word
@@ -102,12 +106,13 @@ contains
       word = words(convergence%ended)
    end function ending
 
-   !> Finds the pair or drive that is open the most, a revolute pair by the distance of its points. If closure errors
-   !> are equal, it is the last pair of the deck, or the last drive: rounding shall not choose.
+   !> Finds the pair or drive of a block with the largest closure error; of a revolute pair this is the distance of its
+   !> points. If closure errors are equal, the last pair of the deck counts, or the last drive: rounding shall not
+   !> choose. Errors are compared over their rounding levels.
    pure subroutine record_closure_error(b, x, i, residuals, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i                              !< the number of the block
+      integer, intent(in) :: i                              !< the number of the block, with one loop at least
       real(wp), intent(in) :: residuals(*)                  !< (rows of the block) unit of the loop or rad
       type(solve_report_t), intent(inout) :: convergence     !< convergence%open is set
       real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
@@ -136,11 +141,11 @@ contains
       end do
    end subroutine record_closure_error
 
-   !> Tells whether equations contradict one another in their rates.
+   !> Tells whether redundant equations contradict one another in their rates or accelerations.
    pure logical function contradict(open, size_of, coarse, closing)
-      real(wp), intent(in) :: open(:)        !< (redundant equations) residuals of their rates
-      real(wp), intent(in) :: size_of        !< numbers of this size have gone into them, in their unit
-      real(wp), intent(in) :: coarse         !< how much larger the known part of the block is than its own, 1 at least
+      real(wp), intent(in) :: open(:)        !< (redundant equations) residuals of their rates or accelerations
+      real(wp), intent(in) :: size_of        !< the largest rate or acceleration in the equations, in their unit
+      real(wp), intent(in) :: coarse         !< size of the block's given part over its own body vectors, 1 at least
       real(wp), intent(in) :: closing        !< closing tolerance (unit of the loop, rad)
 
       contradict = norm2(open) > max(open_rate_part, rate_roundings*epsilon(1.0_wp)*coarse, &

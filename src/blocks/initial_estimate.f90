@@ -1,12 +1,13 @@
-!> The initial estimate of the angles: those of the deck, or better ones that follow from its places. A deck may give
-!> x and y of its links with care and no angles, or wrong ones: then the places of the pairs show how the links lie.
+!> The initial estimate of the angles: those of the deck, or better ones that follow from the positions of its links. A
+!> deck may give x and y of its links with care and no angles, or wrong ones: then the pairs show how the links lie.
 !>
-!> For fixed places the sum of the squared closure errors of the pairs is, as a function of the angle u of one
-!> orientation class, but for a constant,
+!> With fixed x and y of the links, the sum of the squared closure errors of the pairs is, as a function of the angle u
+!> of one orientation class, but for a constant, the form
 !>    c cos u + s sin u + p cos 2u + q sin 2u
-!> Five values give it. It is minimized over one class after another, until no angle changes. A pair counts only if its
-!> point on the other link has a known place: its origin, or a point of a link whose angle is known already. Two links
-!> that meet far from both origins keep the angles of the deck: they may lie on either side.
+!> Five values give its coefficients. It is minimized over one class after another, until no angle changes. A pair
+!> counts only if the position of its point on the other link is known: that link's origin, or a point of a link whose
+!> angle is known already. Two links that meet far from both origins keep the angles of the deck: they may lie on either
+!> side.
 module initial_estimate
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
@@ -20,46 +21,51 @@ module initial_estimate
    private
    public :: guess_t, first_choice_t, assign_guess
 
-   !> Angles from the places are taken if their largest closure error is below this part of the characteristic length,
+   !> Angles from positions are taken only if their closure errors are below this part of the characteristic length.
    real(wp), parameter :: closed_part = 0.1_wp
-   !> and below this part of the closure error of the deck's angles,
+   !> Their closure error must be below this part of the closure error of the deck's angles. Local minima of the form
+   !> within the square of this part of its coefficients above the least are equally good.
    real(wp), parameter :: better_part = 0.2_wp
-   !> and if an angle differs by more than this, in rad.
+   !> rad: an angle must differ by more than this: smaller errors of a deck do not lead to another assembly.
    real(wp), parameter :: differing_angle = 1.0_wp
-   !> A link that lies so differently is open at its pairs by about its size: by this part of the size at least.
+   !> A link whose angle is so wrong has a closure error of about its size: of this part of the size at least.
    real(wp), parameter :: open_part = 0.25_wp
-   !> A deck with closure errors below this part of the characteristic length needs no other angles.
+   !> A deck with closure errors below this part of the characteristic length needs no other angles. The search ends if
+   !> no angle changes by more than this, in rad.
    real(wp), parameter :: good_part = 1.0e-3_wp
-   !> Coefficients of the form below this part of the squared characteristic length give no direction.
+   !> A form with coefficients below this part of the squared characteristic length gives no angle: it is rounding of
+   !> the deck's digits.
    real(wp), parameter :: min_form_part = 1.0e-6_wp
-   !> A point nearer to the origin of its link than this part of the characteristic length has the place of the origin.
+   !> A point nearer to the origin of its link than this part of the characteristic length is where the origin is,
+   !> whatever the angle.
    real(wp), parameter :: short_offset_part = 1.0e-3_wp
-   !> Values of the form that differ by less than this part of its coefficients are equal.
+   !> Values of the form that differ by less than this part of its coefficients are equal: rounding shall not choose.
    real(wp), parameter :: equal_form_part = 1.0e-9_wp
+   !> Sweeps over all classes at most; steps of a turn (10 degrees) in which the minima of the form are sought.
    integer, parameter :: max_sweeps = 20, samples = 36
 
    !> How the position of a block at the first instant was chosen.
    type :: first_choice_t
-      logical :: is_close = .false.              !< another one is about as near
-      logical :: is_incomplete = .false.         !< a nearer one may not have been found
+      logical :: is_close = .false.              !< another position is about as near to the guess
+      logical :: is_incomplete = .false.         !< a nearer position may not have been found
    end type first_choice_t
 
-   !> Where the first position is searched for.
+   !> The initial guess, near which the first position is searched for.
    type :: guess_t
       real(wp), allocatable :: values(:)         !< (0:unknowns) from the deck's positions, rad or unit of the loop
-      real(wp), allocatable :: links(:, :)       !< (3, links) places from the chain's origin, angles of the deck
+      real(wp), allocatable :: links(:, :)       !< (3, links) x, y from the chain's origin, phi (rad), all of the deck
       type(first_choice_t), allocatable :: choice(:)   !< (blocks)
-      type(kept_start_t), allocatable :: starts(:)   !< (blocks) from which the paths to all positions begin
+      type(kept_start_t), allocatable :: starts(:)   !< (blocks) the systems with which paths to all positions begin
    end type guess_t
 
 contains
 
-   !> Makes the guess of a mechanism. Starts of paths from a mechanism of equal structure stay.
+   !> Makes the initial guess of a mechanism from the positions on its cards.
    subroutine assign_guess(m, b, x, guess)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      type(guess_t), intent(inout) :: guess
+      type(blocks_t), intent(in) :: b        !< of `m`
+      type(geometry_t), intent(in) :: x      !< of `m`, with its chain
+      type(guess_t), intent(inout) :: guess  !< empty, or of a mechanism of equal structure: its starts stay
       integer :: i
 
       if (.not. allocated(guess%values)) allocate (guess%values(0:b%unknowns), guess%links(3, size(m%links)), &
@@ -72,7 +78,7 @@ contains
       guess%values(:) = estimated_values(m, b, x)
    end subroutine assign_guess
 
-   !> Estimates the values (0:unknowns) of angles and slides, in rad and the units of their loops.
+   !> Estimates the values (0:unknowns) of angles, slides, and x and y of roots, in rad and the units of their loops.
    function estimated_values(m, b, x) result(value)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -100,7 +106,7 @@ contains
       value = value/x%unit
    end function estimated_values
 
-   !> Gives the position (3) of a link: the place of the deck, and its angle of a list.
+   !> Gives the position (3) of a link: x and y of the deck (deck's unit), and its angle of a list (rad).
    pure function turned(m, i, phi) result(position)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the link
@@ -110,7 +116,7 @@ contains
       position = [m%links(i)%position(:2), phi(i)]
    end function turned
 
-   !> Gives the distance by which a pair is open at the places of the deck, in the deck's unit.
+   !> Gives the size of the closure error of a pair with x and y of the deck and given angles, in the deck's unit.
    pure real(wp) function distance_open(m, k, phi) result(open)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k               !< the number of the pair
@@ -122,16 +128,16 @@ contains
       end associate
    end function distance_open
 
-   !> Estimates the angles (links) in rad: those of the deck, or better ones that follow from the places.
+   !> Estimates the angles (links) in rad: those of the deck or, if these contradict x and y of the links, better ones.
    function estimated_directions(m, tree, axes, span) result(phi)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(in) :: axes
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
+      type(axes_t), intent(in) :: axes       !< of `m`
       real(wp), intent(in) :: span           !< characteristic length, in the deck's unit
       real(wp), dimension(size(m%links)) :: phi, u, v, w
       real(wp) :: before, after
-      logical :: placed(size(m%points))      ! points with known places
-      logical :: is_far(size(m%links))       ! links that turn far
+      logical :: placed(size(m%points))      ! points with known positions
+      logical :: is_far(size(m%links))       ! links whose angles change by more than `differing_angle`
       type(sorted_t) :: classes
       integer, allocatable :: list(:)
       integer :: i, sweep
@@ -159,8 +165,8 @@ contains
       is_far = abs(v - u) > differing_angle
       if (.not. any(is_far)) return
 
-      ! Small changes of other angles close some pairs that are open: only the rest contradicts an angle. Pairs that
-      ! they open do not.
+      ! Small changes of the other angles make some closure errors small and others large: only a pair with a closure
+      ! error both before and after these changes contradicts an angle.
       w = merge(u, v, is_far)
       before = min(largest_closure_error(u), largest_closure_error(w))
       after = largest_closure_error(v)
@@ -169,8 +175,8 @@ contains
 
    contains
 
-      !> Gives each class in `v` the angle of the least closure errors, unless the form is small at all angles. Then the
-      !> places of its points are known as well.
+      !> Gives each class in `v` the angle of the least closure errors; then the positions of its points are known, too.
+      !> A class whose form is small at all angles keeps its angle of `w`.
       subroutine minimize_closure_errors()
          real(wp) :: e(4), angle, sum_of
          integer :: i, j, k, class, pair, points(2)
@@ -202,9 +208,9 @@ contains
          end do
       end subroutine minimize_closure_errors
 
-      !> Tells whether closure errors contradict angles. A link that turns far has a pair, both sides of which have
-      !> their places, that is open by more than a part of that link's size. Its size is the longest vector to such a
-      !> pair: the closure error of a pair near its origin says nothing of its angle.
+      !> Tells whether closure errors contradict the angle of a link in `is_far`: a pair of the link with known
+      !> positions on both sides has a closure error above `open_part` of the link's size. The size is the longest
+      !> vector to such a pair: the closure error of a pair near the link's origin does not depend on its angle.
       pure logical function is_contradicted(angles) result(is)
          real(wp), intent(in) :: angles(:)   !< (links) rad
          real(wp) :: size_of, open, distance
@@ -230,7 +236,8 @@ contains
          end do
       end function is_contradicted
 
-      !> Gives the largest distance by which a pair is open that has known places on both sides, in the deck's unit.
+      !> Gives the largest closure error of the pairs with known positions on both sides, in the deck's unit; 0 without
+      !> such a pair.
       pure real(wp) function largest_closure_error(angles) result(largest)
          real(wp), intent(in) :: angles(:)   !< (links) rad
          integer :: k
@@ -243,10 +250,11 @@ contains
       end function largest_closure_error
    end function estimated_directions
 
-   !> Finds the angle at which the form is least. Two sides of a guide fit equally well: then it is the nearer one.
+   !> Finds the angle, in rad, at which the form is least. Of minima that are about equally low, as the two sides of a
+   !> guide, the nearest to `start` counts.
    pure real(wp) function least(coefficients, start) result(u)
-      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the head of this file
-      real(wp), intent(in) :: start             !< rad: the angle that is nearer
+      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the module's head, squared lengths
+      real(wp), intent(in) :: start             !< rad: the angle from which the search begins
       real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)
       real(wp) :: lowest, slope, lipschitz
       integer :: i
@@ -270,9 +278,9 @@ contains
       end do
    end function least
 
-   !> Evaluates the form at an angle.
+   !> Evaluates the form of the module's head at an angle.
    pure real(wp) function form(coefficients, angle)
-      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the head of this file
+      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the module's head, in any unit
       real(wp), intent(in) :: angle             !< rad
 
       form = dot_product(coefficients, [direction(angle), direction(2.0_wp*angle)])

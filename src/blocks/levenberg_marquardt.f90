@@ -1,6 +1,6 @@
-!> A block assembled from a distant estimate: the sum of squares of its residuals is reduced step by step (Levenberg
-!> 1944, Marquardt 1963). Newton's method by itself would jump to another branch. The residual that is left in the end
-!> is the block's closure error.
+!> The assembly of a block from a distant estimate: the sum of squares of its residuals is reduced step by step
+!> (Levenberg 1944, Marquardt 1963). Newton's method by itself would jump to another branch. The residual that is left
+!> in the end is the block's closure error.
 module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: matrix_layout_t, work_length, solve_first
@@ -15,8 +15,11 @@ module levenberg_marquardt
 
    !> No unknown goes further than this in one iteration: half a radian, half the unit of its loop.
    real(wp), parameter :: longest_step = 0.5_wp
-   !> Steps of that length do not make a larger residual small; the square of this one is well below overflow.
+   !> A larger residual is not reduced: steps of that length do not make it small. Its square is well below overflow.
    real(wp), parameter :: largest_reducible = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   !> The damping, a factor of |d|^2 in the sum that a step d minimizes. It falls to a fifth after a step that reduces
+   !> the sum of squares, and rises five times otherwise. With the least the step is Newton's; with the largest no step
+   !> reduces the sum.
    real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
    !> With a smaller residual no other start is tried.
    real(wp), parameter :: good_residual = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
@@ -24,28 +27,28 @@ module levenberg_marquardt
    real(wp), parameter :: least_residual = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
    !> Shorter steps are rounding, in rad or units of the loop.
    real(wp), parameter :: min_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
-   integer, parameter :: max_damped_steps = 200
-   !> Starts: the values given, then others around them, if these end in a local minimum.
+   integer, parameter :: max_damped_steps = 200   !< steps of at most 0.5 that lead 100 rad have missed the minimum
+   !> Starts at most: the values given, then others around them, as long as each ends in a local minimum.
    integer, parameter :: starts = 6
    !> Multiples of this, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: blocks of more unknowns are left as they are.
    integer, parameter :: max_damped_unknowns = 600
-   !> For blocks of more unknowns the closure error of one equation is not found while all others are closed: that is
-   !> one number, and not worth minutes.
+   !> In blocks of more unknowns no closure error of a single pair is found with all other pairs closed: one number is
+   !> not worth minutes.
    integer, parameter :: max_single_unknowns = 150
-   !> Equations that shall close count so many times as much as others: the residual that is left goes with the square.
+   !> Weights of the equations that shall close, first the one, then the other: their residual falls with the square.
    real(wp), parameter :: stiff(2) = [30.0_wp, 1.0e3_wp]
 
 contains
 
-   !> Brings a block to the values at which the sum of the squares of its residuals is least. A block that is too large
-   !> stays.
+   !> Brings a block to the values with the least sum of the squares of its residuals to which `starts` starts lead. A
+   !> block of more than `max_damped_unknowns` unknowns stays.
    subroutine levenberg_marquardt_solve(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s      !< with the values from which it begins; then those found
+      type(state_t), intent(inout) :: s      !< with the first start and the motion of earlier blocks; then the result
       real(wp), dimension(b%list(i)%shape%n) :: start, best
       real(wp) :: least, square
       integer :: k
@@ -66,15 +69,15 @@ contains
       call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> Finds the pair or drive of a block that is open the most where the sum of squares is least. Its closure error is
-   !> the one with all others closed; 0: no such position is found. If equations are too many, it is its part of the
-   !> least sum, since they share the closure error.
+   !> Finds the pair or drive of a block with the largest closure error at the least sum of squares, and its closure
+   !> error if all other equations are closed; 0 if no such position is found. With redundant equations, which share the
+   !> closure error, it is the closure error at the least sum. A too large block is left without one.
    subroutine find_closure_error(b, x, i, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s      !< with the values of the least sum
-      type(solve_report_t), intent(inout) :: convergence   !< convergence%open is set
+      type(state_t), intent(inout) :: s      !< with the values of the least sum; then with any values
+      type(solve_report_t), intent(inout) :: convergence   !< convergence%open is set; of a too large block it stays
       type(solve_report_t) :: one
       logical :: own(0:b%list(i)%shape%rows)
       real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
@@ -107,7 +110,8 @@ contains
       end do
    end subroutine find_closure_error
 
-   !> Gives a start (n) around given values: off by nothing at first, then by more and more, up to half a turn.
+   !> Gives a start (n) around given values, in their units. Start k is off by up to k/2 in each value: start 0 by
+   !> nothing, the last by almost half a turn.
    pure function around(values, k) result(y)
       real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
       integer, intent(in) :: k               !< number of the start, from 0
@@ -118,13 +122,13 @@ contains
       y = values + 3.0_wp*real(k, wp)/real(starts, wp)*y
    end function around
 
-   !> Reduces the sum of the squares of weighted residuals.
+   !> Reduces the sum of the squares of weighted residuals of a block, down to a local minimum.
    subroutine descend(b, x, i, weights, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       real(wp), intent(in) :: weights(:)     !< (rows) factors of the residuals
-      type(state_t), intent(inout) :: s      !< with the values from which it begins; then those found
+      type(state_t), intent(inout) :: s      !< with the values from which it begins; then those of the least sum
       type(matrix_layout_t) :: damped                     ! the Jacobian with a row more for each unknown
       real(wp) :: values(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(values)), &
          d(size(r) + size(values)), a(size(d), size(values)), damping, square, step, largest

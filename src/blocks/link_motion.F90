@@ -1,5 +1,5 @@
-!> The motion of the links from the motion of the unknowns, along the tree: the origin of a link is that of its parent
-!> and its place on the parent by link_motion.inc, here compiled for reals.
+!> The motion of the links from the motion of the unknowns, along the tree. The origin of a link is the origin of its
+!> parent plus the vector of link_motion.inc, which is compiled for reals here.
 #define NUMBER real(wp)
 #define ZERO 0.0_wp
 #define TWO 2.0_wp
@@ -17,18 +17,18 @@ module link_motion
    private
    public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, missing_all
 
-   !> The worst last: nothing is missing of an unknown, its derivatives are, its value is as well.
+   !> The missing part of an unknown, the worst last: nothing; rate and acceleration; its value as well.
    integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2
 
 contains
 
-   !> Makes the chain of the links of a mechanism, in the deck's unit of length: first the wanted ones and their
-   !> parents.
+   !> Makes the chain of the links of a mechanism, in the deck's unit of length: wanted links and all from which these
+   !> hang come first.
    function new_chain(m, b, x, wanted) result(c)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      logical, intent(in) :: wanted(:)       !< (links) the motion of the link is asked for
+      type(blocks_t), intent(in) :: b        !< of `m`, solvable
+      type(geometry_t), intent(in) :: x      !< of `m`
+      logical, intent(in) :: wanted(:)       !< (links) the motion of the link is needed
       type(link_order_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
@@ -49,12 +49,12 @@ contains
       call assign_chain(m, b, x, c)
    end function new_chain
 
-   !> Gives a chain the numbers of a mechanism.
+   !> Gives a chain of links the numbers of a mechanism.
    subroutine assign_chain(m, b, x, chain)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      type(link_order_t), intent(inout) :: chain   !< as `new_chain` makes it
+      type(blocks_t), intent(in) :: b        !< solvable
+      type(geometry_t), intent(in) :: x      !< with the units and axes by the numbers of `m`
+      type(link_order_t), intent(inout) :: chain   !< its order stays; all its numbers are set
       integer :: i
 
       do i = 1, size(chain%links)
@@ -82,13 +82,13 @@ contains
       chain%origin = x%equations%axes%origin
    end subroutine assign_chain
 
-   !> Finds the motion of the first links of a chain.
+   !> Finds position, velocity and acceleration of the first n links of a chain, and the positions of ground links.
    pure subroutine move_links(chain, n, s, q, finite)
       type(link_order_t), intent(in) :: chain
       integer, intent(in) :: n               !< how many links: chain%wanted, or all
-      type(state_t), intent(in) :: s
-      type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; x and y from the chain's origin
-      logical, intent(out) :: finite         !< no number is out of range, and no sum of them
+      type(state_t), intent(in) :: s         !< with the motion of their unknowns
+      type(motion_t), intent(inout) :: q     !< (links) in the deck's units; x and y from the chain's origin
+      logical, intent(out) :: finite         !< no number is out of range, nor is the sum of all
 
       if (asserts) call assert(n <= size(chain%links), 'move_links: as many links as there are')
       q%origin = chain%origin
@@ -96,11 +96,12 @@ contains
          q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> Finds the motion of ground links and moving links on plain arrays, which cost no descriptors.
+   !> Finds positions of ground links and the motion of moving links. Reason for plain arrays: each step does it, and
+   !> descriptors cost time.
    pure subroutine move_chain(n, links, grounds, ground, ground_positions, unknowns, positions, velocities, &
       accelerations, finite)
       integer, intent(in) :: n                              !< how many links are moved
-      type(link_step_t), intent(in) :: links(n)            !< parents before their children
+      type(link_step_t), intent(in) :: links(n)            !< (moved links) parents before their children
       integer, intent(in) :: grounds                        !< how many ground links there are
       integer, intent(in) :: ground(*)                      !< (ground links) their numbers
       real(wp), intent(in) :: ground_positions(3, *)        !< (3, ground links) x, y, phi, in the deck's unit and rad
@@ -108,7 +109,7 @@ contains
       real(wp), intent(inout) :: positions(3, *)            !< (3, links) x, y, phi, in the deck's unit and rad
       real(wp), intent(inout) :: velocities(3, *)           !< (3, links) by time
       real(wp), intent(inout) :: accelerations(3, *)        !< (3, links) by time squared
-      logical, intent(out) :: finite                        !< no number is out of range
+      logical, intent(out) :: finite                        !< no number is out of range, nor is the sum of all
       type(vector_t) :: place(0:2)
       real(wp) :: check
       integer :: i
@@ -125,6 +126,7 @@ contains
                place(1) = vector_t(place(1)%x + velocities(1, h%parent), place(1)%y + velocities(2, h%parent))
                place(2) = vector_t(place(2)%x + accelerations(1, h%parent), place(2)%y + accelerations(2, h%parent))
             end if
+
             positions(:, k) = [place(0)%x, place(0)%y, f%value + h%numbers%angle_offset]
             velocities(:, k) = [place(1)%x, place(1)%y, f%rate]
             accelerations(:, k) = [place(2)%x, place(2)%y, f%acceleration]
@@ -135,12 +137,12 @@ contains
       finite = abs(check) <= huge(check)
    end subroutine move_chain
 
-   !> Finds how much of each link of a motion is known, and why no more, from the unknowns by which it and its parents
-   !> move. Links that are not wanted count as known.
+   !> Finds how much of the motion of each link is known, and the flag that tells why no more, from the unknowns by
+   !> which the link and its parents move. Links that are not wanted count as known.
    subroutine flag_links(chain, missing, found)
       type(link_order_t), intent(in) :: chain
       integer, intent(in) :: missing(0:)     !< (0:unknowns) missing_nothing, ...
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found   !< of all links; link_known and link_flag are set
       integer :: of_link(0:size(found%position, 2)), k
 
       of_link = missing_nothing
@@ -157,11 +159,11 @@ contains
       end associate
    end subroutine flag_links
 
-   !> Gives a link the numbers of its place on its parent.
+   !> Gives a link the numbers of its position on its parent: offset, body vector and slide vector.
    pure subroutine set_place(m, tree, x, link)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(geometry_t), intent(in) :: x
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
+      type(geometry_t), intent(in) :: x      !< with the units and axes by the numbers of `m`
       type(link_step_t), intent(inout) :: link   !< with a parent
       real(wp) :: sign_of, offset(2)
 

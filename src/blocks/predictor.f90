@@ -1,18 +1,18 @@
-!> The prediction of the next position from the motions before: the start of Newton's method.
+!> The prediction of the next position from the motions before: the initial guess of Newton's method.
 !>
-!> From one instant:  x + h (v + h a/2), error h^3 x'''/6.
+!> From one motion:  x + h (v + h a/2), error h^3 x'''/6.
 !> From three at equal steps h, latest first: the integral over the next step of the quintic that has their velocities
 !> and accelerations (Hermite),
 !>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
-!> many times over, and a start that is wrong only by rounding costs a second factorization. Rejected, too: four
+!> many times over, and a guess that is wrong only by rounding costs a second factorization. Rejected, too: four
 !> motions instead of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of
 !> 1.6, but take as long to 3 per cent, and so do steps of ten degrees.
 !>
 !> Near a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
 !>
-!> For comparison (--study) the order can be given: x_0 only, with its velocity, with its acceleration as well, and
-!> with the third derivative as the difference of two accelerations.
+!> For comparison (--study) the order can be given: 0 takes x_0 only, 1 its velocity as well, 2 its acceleration as
+!> well, 3 the third derivative as well, as the difference of two accelerations.
 module predictor
    use assertions, only: asserts, assert
    use kinds, only: wp
@@ -29,45 +29,45 @@ module predictor
    public :: history_t, new_history, begin_at, accept, predict, compare, recall, has_equal_steps, &
       largest_predicted_change, order_weights
 
-   !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
-   !> change may end at another assembly and still look right.
+   !> The largest predicted change, in radians and units of the loop, that one step may have. A larger predicted change
+   !> may end at another assembly and still look right.
    real(wp), parameter :: largest_predicted_change = 1.0_wp
-   !> Of velocities and of accelerations, from the latest on, in the formula for three motions.
+   !> Weights of velocities and of accelerations in the formula for three motions, the latest first.
    real(wp), parameter, public :: rate_weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter, public :: acceleration_weight(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
    !> An acceleration does not serve a prediction if it makes more than this part of the change uncertain: such a start
    !> could come nearer to another branch than to its own.
    real(wp), parameter :: max_uncertain_part = 0.01_wp
-   !> Accelerations that are uncertain by less than this part of the largest are known.
+   !> Accelerations that are uncertain by less than this part of the largest count as certain.
    real(wp), parameter :: known_acceleration_part = 0.01_wp
-   !> With a pivot above, rounding leaves no acceleration uncertain by a part that a substep can feel.
+   !> With a larger pivot no acceleration is so uncertain by rounding that a substep depends on it.
    real(wp), parameter :: safe_pivot = epsilon(1.0_wp)**0.2_wp
    !> Steps that differ by less than this part count as equal: instants are rounded too.
    real(wp), parameter :: equal_step_part = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
-   !> One unknown in the last three motions, by slots; only the latest of its values.
+   !> One unknown in the last three motions: the latest of its values; rates and accelerations by `slot` of `history_t`.
    type :: unknown_history_t
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
    end type unknown_history_t
 
    !> The last three motions accepted, and the findings from the Jacobians of the latest.
    type :: history_t
-      integer, allocatable :: predicted(:)              !< the unknowns that iterations solve for
-      integer :: order = own_predictor                  !< 0 to 3, or as above
-      integer :: filled = 0                             !< motions that are there, 0 to 3
-      integer :: slot(0:2) = [0, 1, 2]                  !< of the motions, the latest first
-      real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
+      integer, allocatable :: predicted(:)              !< numbers of the unknowns that iterations solve for
+      integer :: order = own_predictor                  !< of predictions, 0 to 3; own_predictor: the highest possible
+      integer :: filled = 0                             !< how many motions there are, 0 to 3
+      integer :: slot(0:2) = [0, 1, 2]                  !< where `past` has the motions, the latest first
+      real(wp) :: t(0:2) = 0.0_wp                       !< their parameters of the path (time), the latest first
       real(wp) :: uncertain(0:2) = 0.0_wp               !< uncertainty of their accelerations over velocities, 1/time
-      type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns)
-      type(jacobian_t), allocatable :: jacobian(:)      !< (blocks) of the latest
-      real(wp), allocatable :: entries(:)               !< (rows*n) of the latest Jacobian of a block with too many rows
+      type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns) only those of `predicted` are set
+      type(jacobian_t), allocatable :: jacobian(:)      !< (blocks) of the latest motion
+      real(wp), allocatable :: entries(:)               !< (rows*n) the latest Jacobian of a block with too many rows
    end type history_t
 
 contains
 
-   !> Makes the history before the first motion.
+   !> Makes the history before the first motion, which is empty.
    pure function new_history(b, order) result(h)
-      type(blocks_t), intent(in) :: b
+      type(blocks_t), intent(in) :: b                   !< with the blocks that move
       integer, intent(in) :: order                      !< of predictions, 0 to 3, or own_predictor
       type(history_t) :: h
 
@@ -76,7 +76,7 @@ contains
       allocate (h%past(0:b%unknowns), h%jacobian(size(b%list)))
    end function new_history
 
-   !> Makes a motion the latest: the one that is followed.
+   !> Makes a motion the latest motion of a history, with its Jacobians and the uncertainty of its accelerations.
    subroutine accept(b, x, s, history)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -97,13 +97,14 @@ contains
       if (b%redundant > 0) history%entries = jacobian_of(b, x, 1, s)
    end subroutine accept
 
-   !> Keeps the Jacobians of a motion and finds their least pivot. Plain arrays cost no descriptors at each block.
+   !> Copies the findings from the Jacobians of a motion and finds the least pivot. Reason for plain arrays: each step
+   !> does it, and descriptors cost time.
    pure subroutine keep(n, list, found, kept, least)
       integer, intent(in) :: n                          !< the length of the list
       integer, intent(in) :: list(n)                    !< numbers of the blocks
       type(jacobian_t), intent(in) :: found(*)          !< (blocks) of the motion
-      type(jacobian_t), intent(inout) :: kept(*)        !< (blocks)
-      real(wp), intent(out) :: least                    !< |pivot| of these blocks
+      type(jacobian_t), intent(inout) :: kept(*)        !< (blocks) the copy; blocks not in the list stay
+      real(wp), intent(out) :: least                    !< the least |pivot| of these blocks; huge without blocks
       integer :: k
 
       least = huge(least)
@@ -113,15 +114,16 @@ contains
       end do
    end subroutine keep
 
-   !> Compares a motion with the latest: whether determinants keep their signs, and how its Kantorovich ratio grows with
-   !> the excursion of the drives.
+   !> Compares a motion with the latest motion of a history: whether determinants keep their signs, and how much its
+   !> Kantorovich ratio grows with the excursion of the drives.
    subroutine compare(b, x, list, history, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in), contiguous :: list(:)        !< (any number) numbers of the blocks that are solved
+      integer, intent(in), contiguous :: list(:)        !< (any number) numbers of the blocks that were solved
       type(history_t), intent(in) :: history
-      type(state_t), intent(inout) :: s                 !< the motion
-      type(solve_report_t), intent(inout) :: convergence !< how the blocks ended
+      type(state_t), intent(inout) :: s                 !< the motion; `crossed` of the blocks is set
+      !> Of the motion: determinant_signs_kept becomes false if a block has crossed; amplification is raised.
+      type(solve_report_t), intent(inout) :: convergence
       logical :: crosses
       integer :: k
 
@@ -140,14 +142,14 @@ contains
       end do
    end subroutine compare
 
-   !> Finds which blocks have crossed: the signs of their determinants are others than before. At a change point itself
-   !> the sign is random.
+   !> Finds which blocks of a list have crossed a change point: the signs of their determinants have changed. At a
+   !> change point itself the sign is random, and the block has not crossed.
    pure subroutine compare_signs(n, list, before, now, is_singular, crossed, crosses)
       integer, intent(in) :: n                          !< the length of the list
       integer, intent(in) :: list(n)                    !< numbers of the blocks
-      type(jacobian_t), intent(in) :: before(*), now(*) !< (blocks)
-      logical, intent(in) :: is_singular(*)             !< (blocks) at a change point
-      logical, intent(inout) :: crossed(*)              !< (blocks) the sign is another
+      type(jacobian_t), intent(in) :: before(*), now(*) !< (blocks) of the motion before and of this motion
+      logical, intent(in) :: is_singular(*)             !< (blocks) now its Jacobian has no inverse
+      logical, intent(inout) :: crossed(*)              !< (blocks) it has crossed; blocks not in the list stay
       logical, intent(out) :: crosses                   !< some block of the list has crossed
       integer :: k
 
@@ -160,15 +162,15 @@ contains
       end do
    end subroutine compare_signs
 
-   !> Puts the latest motion that was accepted into the state. Before the first motion these are the estimated values,
-   !> or the values of drives if only drives give them.
+   !> Puts the latest motion of a history into a state. If the history is empty, blocks that iterate get the estimated
+   !> values instead. Unknowns of explicit blocks follow from the drives.
    subroutine recall(b, x, path, history, estimated, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(history_t), intent(in) :: history
-      real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad, unit of the block
-      type(state_t), intent(inout) :: s                 !< the motion found last
+      real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad or unit of the loop
+      type(state_t), intent(inout) :: s                 !< if the history is empty, with the drives
       integer :: k
 
       if (history%filled > 0) then
@@ -194,7 +196,7 @@ contains
       end do
    end subroutine recall
 
-   !> Remembers a motion as the latest.
+   !> Records a motion as the latest of a history, which forgets the motion before the last two.
    pure subroutine remember(history, t, unknown, uncertain)
       type(history_t), intent(inout) :: history
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
@@ -216,7 +218,8 @@ contains
       history%filled = min(history%filled + 1, 3)
    end subroutine remember
 
-   !> Puts the latest motion at a parameter of another path: the rates remembered are no guide from there.
+   !> Puts the latest motion of a history at a parameter of another path, and empties the history: rates on the path
+   !> before predict nothing on the other path.
    pure subroutine begin_at(history, t)
       type(history_t), intent(inout) :: history
       real(wp), intent(in) :: t                         !< the parameter, in the deck's unit of time
@@ -225,22 +228,25 @@ contains
       history%filled = 0
    end subroutine begin_at
 
-   !> Predicts the values of all unknowns that are iterated. At least one motion is remembered.
+   !> Predicts the values of all unknowns that iterations solve for, by the formulas of the module's head. If one
+   !> acceleration is too uncertain, the latest certain one serves, or none.
    pure subroutine predict(history, t, unknown, change)
-      type(history_t), intent(in) :: history
+      type(history_t), intent(in) :: history            !< with one motion at least, unless `t` is its parameter
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
-      type(unknown_t), intent(inout) :: unknown(0:*)    !< (0:unknowns)
-      real(wp), intent(out) :: change                   !< the largest difference from the latest, rad or unit of length
+      type(unknown_t), intent(inout) :: unknown(0:*)    !< (0:unknowns) the values are predicted, rates stay
+      real(wp), intent(out) :: change                   !< the largest change from the latest, rad or unit of the loop
       real(wp) :: step, d, w(3)
       integer :: i, k, known, s0, s1, s2
 
       if (asserts) call assert(history%filled > 0 .or. .not. abs(t - history%t(0)) > 0.0_wp, &
          'predict: a motion that is remembered, or its parameter')
+
       change = 0.0_wp
       step = t - history%t(0)
       s0 = history%slot(0)
       s1 = history%slot(1)
       s2 = history%slot(2)
+
       known = 0
       if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > max_uncertain_part) then
          known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
@@ -274,16 +280,16 @@ contains
       end do
    end subroutine predict
 
-   !> Estimates how uncertain the accelerations of a block are, as a part of its velocities in a unit of time. With its
-   !> pivot p, and with L the Lipschitz constant of its Jacobian, positions are known to eps/p, and the other branch is
-   !> about p/L away. The velocities are uncertain by the quotient of the two, in parts of v, and the accelerations by
-   !> that over p/L, in parts of v^2; v is the largest velocity, of the block or of a drive. At dead points the
-   !> accelerations grow as the velocities do, and are known.
+   !> Estimates the uncertainty of the accelerations of a block over its velocities, in 1/time; 0: they are certain.
+   !> With its least pivot p, and with L the Lipschitz constant of its Jacobian, positions are known to eps/p, and the
+   !> other branch is about p/L away. Let v be the largest velocity of the block or of a drive. The velocities are
+   !> uncertain by (eps/p)/(p/L) v, the accelerations by this over p/L times v. At dead points the accelerations grow as
+   !> the velocities do, and are certain.
    pure real(wp) function uncertain_part(b, x, i, pivot, s) result(part)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                          !< the number of the block
-      real(wp), intent(in) :: pivot                     !< the least of its Jacobian
+      real(wp), intent(in) :: pivot                     !< the least |pivot| of its Jacobian
       type(state_t), intent(in) :: s                    !< the motion
       real(wp) :: v, fastest
 
@@ -299,8 +305,8 @@ contains
       end associate
    end function uncertain_part
 
-   !> Gives the weights (3) of the velocity, the acceleration and the last change of the acceleration in a prediction of
-   !> given order.
+   !> Gives the weights (3) of the velocity (time), the acceleration (time^2) and the last change of the acceleration
+   !> (time^2) in a prediction of given order by Taylor's series.
    pure function order_weights(order, step, before) result(w)
       integer, intent(in) :: order                      !< 0 to 3
       real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
@@ -313,8 +319,8 @@ contains
       if (order >= 3 .and. abs(before) > 0.0_wp) w(3) = step**3/(6.0_wp*before)
    end function order_weights
 
-   !> Tells whether three motions are remembered at equal steps, the next comes after an equal step, and no other order
-   !> is asked for.
+   !> Tells whether the formula for three motions serves: the history has three motions at equal steps, the next step is
+   !> equal, and no order is given.
    pure logical function has_equal_steps(history, step)
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
@@ -325,11 +331,11 @@ contains
          .and. abs(history%t(1) - history%t(2) - step) <= equal_step_part*abs(step)
    end function has_equal_steps
 
-   !> Lists the unknowns of those blocks that iterate.
+   !> Lists the unknowns of the blocks of a list that are not explicit, increasing.
    pure function iterated_unknowns(b, list) result(unknowns)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: list(:)   !< (any number) numbers of blocks
-      integer, allocatable :: unknowns(:)
+      integer, allocatable :: unknowns(:)   !< their numbers
       logical :: iterated(size(b%list))
       integer :: u
 

@@ -1,13 +1,13 @@
 !> The position of a block whose Jacobian has no inverse. Its equations determine the position only to the root of the
-!> rounding: along the direction k in which they say nothing to the first order, Newton's method ends anywhere within
-!> 1E-7, and digits would be printed that are wrong. But the place at which the Jacobian itself has no inverse is known
-!> in full. With w and k on the left and the right of its least singular value s, and to the second order along k
+!> rounding: along the direction k, on which they do not depend to the first order, Newton's method ends anywhere
+!> within 1E-7, and wrong digits would be printed. But the point at which the Jacobian has no inverse is known in full.
+!> With w and k the left and the right vector of its least singular value s, and to the second order along k
 !>    w . r(x + a k) = w . r + a s + a^2 q/2,   q = w . r''[k, k],
-!> it is at a = -s/q. If the equations are satisfied there, as far as rounding can tell, that place is the position;
-!> otherwise the position is one of the two roots near it.
+!> this point is at a = -s/q. If the equations are satisfied there to rounding, the point is the position; otherwise the
+!> position is one of the two roots near the point.
 !>
 !> The kind of a singular position: with w a left null vector of the Jacobian J of a block and k a right one, J x' = b
-!> has solutions x' = p + l k only if w . b = 0. Otherwise there is none: the drives cannot go on at a finite velocity
+!> has solutions x' = p + l k only if w . b = 0. Otherwise it has none: the drives cannot go on at a finite velocity
 !> (dead point, toggle position). A solution is the velocity of a motion only if J x'' = b2(x') has solutions too:
 !> w . b2(p + l k) = 0, of second degree in l. Two real roots are two branches that cross (change point); no root is a
 !> position without neighbours. A drive that turns on a dead point has b = 0 and an acceleration: two branches cross.
@@ -23,38 +23,40 @@ module singular_position
    private
    public :: refine_singular_position, block_singularity
 
-   !> Larger blocks are not examined: twenty decompositions take a second for these.
+   !> Larger blocks are not examined: twenty decompositions of so many rows take a second.
    integer, parameter :: max_examined_rows = 300
 
-   !> This over the root of the second derivative, 1 at most, is the largest distance of the place, in rad and units of
-   !> the loop.
+   !> The refined position is no further away than this over the root of q (of 1, if q is larger), in rad and units of
+   !> the loop: Newton's method ends within the root of the rounding.
    real(wp), parameter :: furthest_place = 64.0_wp*sqrt(epsilon(1.0_wp))
-   !> A residual below this part of the level is rounding. The level is the largest of: the values, a sum of lengths,
-   !> and the rounding of drives and earlier blocks.
+   !> A residual below this part of the level is rounding. The level is the largest of the values, `sum_size`, and the
+   !> rounding of drives and earlier blocks.
    real(wp), parameter :: rounding_residual = 1.5_wp*epsilon(1.0_wp)
-   !> A sum of lengths counts as so many, in units of the loop.
+   !> The size of a sum of lengths that is rounded, in units of the loop.
    real(wp), parameter :: sum_size = 3.0_wp
-   !> Part of the Lipschitz constant below which the second derivative counts as zero: along a motion with the drives
-   !> held it is the rounding of the difference.
+   !> Part of the Lipschitz constant below which q counts as zero: along a motion with fixed drives q is the rounding of
+   !> the second difference.
    real(wp), parameter :: least_curvature = 512.0_wp*epsilon(1.0_wp)/difference_step**2
 
-   !> A drive whose speed takes it no further than this before it turns, in rad or lengths, is at rest.
+   !> A drive whose speed takes it no further than this before it turns, in rad or units of its loop, is at rest: the
+   !> speed is rounding.
    real(wp), parameter :: standstill = 64.0_wp*epsilon(1.0_wp)
 
-   !> Up to this part of b along w, over the speeds that enter it, the equations agree. Up to this part the coefficients
-   !> above and their discriminant are zero. A singular position is known to the root of the rounding, and so is w; at a
-   !> dead point that part is of order 1: the mean of the exponents.
+   !> If w . b is up to this part of the speeds in b, the equations have solutions. Coefficients of the quadratic in l,
+   !> and its discriminant, are zero up to this part. The position is singular to the root of the rounding, and w is as
+   !> uncertain; at a dead point w . b is of order 1. The part is the mean of the two exponents.
    real(wp), parameter :: agreement_part = epsilon(1.0_wp)**0.25_wp
 
 contains
 
-   !> Moves a block from a singular position to the place at which its Jacobian has no inverse, or to the root of its
-   !> equations near this place. If neither is a position, the block stays.
+   !> Moves a block from a singular position to the point at which its Jacobian has no inverse, or to the root of its
+   !> equations near this point, by the formulas of the module's head. If neither is a position within rounding, or the
+   !> block is larger than `max_examined_rows`, the block stays.
    subroutine refine_singular_position(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s      !< with the singular position, just solved
+      type(state_t), intent(inout) :: s      !< with the singular position, just solved; the values of the block change
       type(svd_t) :: v
       real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, projected_residual, level
       real(wp) :: driving(2)
@@ -64,8 +66,8 @@ contains
       first = values_of(b, i, s)
       v = decomposed(b, x, i, s)
       level = max(sum_size, maxval(abs(first)), x%blocks(i)%coarse)
-      ! A rounding of an angle that drives and earlier blocks give counts along w: at a dead point in full. At a change
-      ! point it does not count, since such an angle leaves that as it is to the first order.
+      ! The rounding of angles that drives and earlier blocks give counts by its part along w: at a dead point in full,
+      ! at a change point not at all.
       driving = driving_motion(b, i, s)
       if (driving(1) > 0.0_wp) then
          call assemble_dense(b, x, i, s, jacobian, r)
@@ -86,9 +88,9 @@ contains
 
    contains
 
-      !> Puts the block at a place, and corrects it as far as the equations determine it: then `y`.
+      !> Gives the block values and corrects them by one Gauss-Newton step, to `y`.
       subroutine go_to(place)
-         real(wp), intent(in) :: place(:)    !< (n) rad or unit of the loop
+         real(wp), intent(in) :: place(:)    !< (n) the values, rad or unit of the loop
          real(wp) :: before
 
          call set_values(b, i, place, s)
@@ -97,13 +99,13 @@ contains
       end subroutine go_to
    end subroutine refine_singular_position
 
-   !> Gives the largest rate and acceleration (rad, lengths) of the drives that move a block, itself or through blocks
-   !> below it. The rate is 0 if they rest, or if only rounding tells them from the turning point of a motion with their
-   !> accelerations.
+   !> Gives the largest |rate| and |acceleration| (2) of the drives that move a block, directly or through blocks on
+   !> which it builds, in rad or units of the loop by time and its square. The rate of a drive counts as 0 if the drive
+   !> is within `standstill` of the point at which it turns.
    function driving_motion(b, i, s) result(largest)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the drives
       real(wp) :: largest(2)
       integer, allocatable :: below(:)
       integer :: k, row
@@ -121,8 +123,14 @@ contains
       end do
    end function driving_motion
 
-   !> Tells which singular position a block has. The kind is unclear if all that moves the block is at rest. It is also
-   !> unclear if the links can move to a place nearby with an equal judgement: a drive moves nothing, or adds nothing.
+   !> Finds the kind of a singular position of a block: singular_dead (velocities do not exist), singular_change (two
+   !> branches cross), or singular_unclear:
+   !>
+   !> - the drives of the block rest;
+   !> - velocities exist, but no two branches cross;
+   !> - the block can move to a singular position nearby at which velocities exist, or do not exist, as here: the drives
+   !>   move nothing, or add nothing to one another;
+   !> - the block has more rows than `max_examined_rows`.
    integer function block_singularity(b, x, i, s) result(found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -149,16 +157,17 @@ contains
       found = merge(singular_change, singular_dead, agrees)
    end function block_singularity
 
-   !> Judges the velocities of a block whose Jacobian has no inverse. With several null vectors it is not examined
-   !> whether branches cross: they are taken to.
+   !> Finds whether the velocities of a block whose Jacobian has no inverse exist, and whether two branches cross, by
+   !> the module's head. With several null vectors, or redundant equations, branches count as crossing if velocities
+   !> exist.
    subroutine classify_singularity(b, x, i, speed, s, agrees, crosses)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       real(wp), intent(in) :: speed          !< the largest rate of its drives, or the root of their acceleration
-      type(state_t), intent(inout) :: s      !< with its position; its rates are overwritten
+      type(state_t), intent(inout) :: s      !< with its position; the rates of the block are overwritten
       logical, intent(out) :: agrees         !< its equations for the velocities have solutions
-      logical, intent(out) :: crosses        !< two of them are velocities of branches
+      logical, intent(out) :: crosses        !< two of the solutions are velocities of branches
       type(svd_t) :: v
       real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), c(0:2), unit
       real(wp) :: jacobian(size(r)*size(p))
@@ -173,7 +182,7 @@ contains
       crosses = agrees
       if (.not. (agrees .and. v%rows == v%n .and. v%rank >= v%n - 1)) return
 
-      ! The coefficients of w . b2(p + l k) in the module's head, l in units of the velocities p or of `speed`.
+      ! The coefficients of w . b2(p + l k), l in units of |p| or of `speed`, whichever is larger.
       p = 0.0_wp
       do j = 1, v%n - 1
          p = p + v%right(j, :)*(dot_product(v%left(:, j), r)/v%s(j))
