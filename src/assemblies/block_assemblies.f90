@@ -1,5 +1,6 @@
-!> All real positions of one block, for given positions of the earlier ones. If its equations leave one unknown in each
-!> group, they are found in closed form, otherwise as the ends of paths. The block's own Newton method corrects each.
+!> All real positions of one block, for given positions of earlier blocks. If its bilinear system has one unknown in
+!> each group, the positions are found in closed form, otherwise as the ends of paths. Newton's method of the block
+!> corrects each.
 module block_assemblies
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
@@ -16,46 +17,46 @@ module block_assemblies
    private
    public :: block_positions_t, find_positions, max_group
 
-   !> Unknowns of a group at most: C(12, 6) = 924 paths.
+   !> Unknowns of a group at most: C(12, 6) = 924 paths. Each further unknown takes almost four times as many.
    integer, parameter :: max_group = 6
-   !> The two groups of a real solution are conjugate within this part.
+   !> The two groups of a real solution are conjugate within this part: paths end with half of all digits at least.
    real(dp), parameter :: conjugate_tolerance = 8.0_dp*sqrt(coarser_rounding)
    !> Newton's method moves a real solution by no more (rad, unit of the loop).
    real(dp), parameter :: max_newton_move = sqrt(conjugate_tolerance)
-   !> Both for singular solutions, of which rounding leaves fewer digits.
+   !> The two limits for singular solutions, of which rounding leaves fewer digits.
    real(dp), parameter :: singular_conjugate_tolerance = sqrt(conjugate_tolerance)
    real(dp), parameter :: max_singular_move = 10.0_dp*singular_conjugate_tolerance
-   !> Positions that differ by less are one (rad, unit of the loop), regular and singular ones.
+   !> Positions that differ by less are one (rad, unit of the loop): regular ones, then singular ones.
    real(dp), parameter :: same_solution_tolerance = conjugate_tolerance
    real(dp), parameter :: same_singular_tolerance = max_singular_move
-   !> Steps of Gauss and Newton towards a singular solution.
+   !> Steps of Gauss and Newton towards a singular solution: near a double root each step halves the error.
    integer, parameter :: singular_steps = 6
-   !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
+   !> Redundant equations hold to this part of their terms: lengths have 11 digits, a double root half of all digits.
    real(dp), parameter :: surplus_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(coarser_rounding))
-   !> Within a closing tolerance the paths end at solutions of some of the equations. Newton's method moves them by so
-   !> many times that tolerance.
+   !> With a closing tolerance the paths end at solutions of some of the equations. Newton's method moves these by up to
+   !> this many times the tolerance.
    real(dp), parameter :: moves_per_closing = 100.0_dp
-   !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
+   !> Newton's method starts from multiples of 1/grid, 1.5E-8: ends of paths are known better.
    real(wp), parameter :: grid = 2.0_wp**26
 
    !> Positions of one block: those of the last search, and the counts and findings of all searches.
    !> paths = finite + infinite + failed + partial.
    type :: block_positions_t
-      real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
+      real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions) rad or unit of the loop
       integer, allocatable :: sign_of(:)        !< (positions) of the determinant; 0: singular
       logical, allocatable :: rates_inconsistent(:) !< (positions) redundant equations agree there, but not their rates
-      integer :: paths = 0, finite = 0, infinite = 0, failed = 0
-      integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
-      integer :: real = 0                       !< positions
-      logical :: is_large = .false.              !< a group has too many unknowns: not solved
-      logical :: is_open = .false.              !< rates are open in some position
-      logical :: moves = .false.                !< some positions are not separate: it can move with its drives held
+      integer :: paths = 0, finite = 0, infinite = 0, failed = 0   !< all; those with such ends
+      integer :: partial = 0                    !< paths whose ends do not solve the redundant equations
+      integer :: real = 0                       !< how many positions were found
+      logical :: is_large = .false.             !< a group has too many unknowns: no search was made
+      logical :: is_open = .false.              !< in some position redundant equations contradict one another's rates
+      logical :: moves = .false.                !< some positions form a curve: the block can move with fixed drives
    end type block_positions_t
 
 contains
 
-   !> Finds all positions of a block for given values of earlier blocks and drives. If the block is too wide or lacks
-   !> equations, none is found, and the findings say why.
+   !> Finds all real positions of a block for given values of earlier blocks and drives. If the block is too large or
+   !> lacks equations at these values, no position is found, and found%is_large or found%moves is true.
    subroutine find_positions(b, x, i, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -63,7 +64,8 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s      !< with the values of earlier blocks and drives; the block's own change
       integer, intent(in) :: largest_group   !< unknowns of a group at most, up to `max_group`
-      type(path_start_t), allocatable, intent(inout) :: start   !< of the paths: see `follow_paths`
+      !> The system with which paths begin, left by a search before; not allocated or of another p: random forms.
+      type(path_start_t), allocatable, intent(inout) :: start
       type(block_positions_t), intent(inout) :: found   !< of the searches before; then also of this one
       type(solve_report_t) :: c
       type(block_form_t) :: f
@@ -82,6 +84,7 @@ contains
          found%rates_inconsistent = [.false.]
          return
       end if
+
       call make_form(b, x, i, s, f)
       found%is_large = found%is_large .or. f%system%p > largest_group
       found%moves = found%moves .or. f%is_lacking
@@ -117,7 +120,7 @@ contains
 
    contains
 
-      !> Adds the position of the block at a solution, if it is real and new.
+      !> Adds the position of the block at a solution, if it is real and new; otherwise adds to the counts.
       subroutine add_position(ending)
          type(path_end_t), intent(in) :: ending   !< the solution
          type(solve_report_t) :: c
@@ -132,12 +135,13 @@ contains
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
          place = anint(grid*place)/grid
+
          ! Half a turn is positive, whatever sign rounding gives it.
          where (f%turns < 0 .and. place <= anint(-grid*pi)/grid) place = -place
          call set_values(b, i, place, s)
          call add_turns(b, x, i, s)
          place = values_of(b, i, s)
-         ! At a singular solution Newton's method would lose the way.
+         ! Near a singular solution Newton's method by itself may go astray.
          do k = 1, merge(singular_steps, 0, ending%is_singular)
             call gauss_newton_step(b, x, i, s, residual)
          end do
@@ -174,9 +178,10 @@ contains
       end function apart
    end subroutine find_positions
 
-   !> Finds the unknowns of the block at a solution, and tells whether they are real.
+   !> Finds the unknowns of a block at a solution of its system, and tells whether they are real. If they are not, the
+   !> values are those of the mean of the solution and its conjugate.
    subroutine real_values(form, ending, level, values, is_real)
-      type(block_form_t), intent(in) :: form
+      type(block_form_t), intent(in) :: form   !< of the block
       type(path_end_t), intent(in) :: ending   !< the solution
       real(dp), intent(in) :: level          !< part of the largest unknown by which the groups may fail to be conjugate
       real(wp), intent(out) :: values(:)     !< (n) rad or unit of the loop

@@ -15,53 +15,55 @@ module block_bilinear
    private
    public :: block_form_t, make_form
 
-   !> The system of a block. The block's unknowns follow from its solutions.
+   !> The system of a block, of which each group has p unknowns. The n unknowns of the block follow from its solutions.
    type :: block_form_t
-      !> (n) -1 of a direction; of a slide the number of its direction in the block, 0: a known direction.
+      !> (n) -1 of an angle; of a slide the column of the angle of its guide, 0 if an earlier block has this angle.
       integer, allocatable :: turns(:)
-      complex(dp), allocatable :: basis(:, :)         !< (0:n, 0:p) of directions and slides from the system's unknowns
+      !> (0:n, 0:p) 1, directions w and slides z of the block from the unknowns of the first group.
+      complex(dp), allocatable :: basis(:, :)
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, at the values of earlier blocks
       logical :: is_impossible = .false.              !< its linear equations contradict one another
-      type(bilinear_t) :: system
-      complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) equations that are too many
+      type(bilinear_t) :: system                      !< not set if lacking or impossible
+      complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) the equations beyond 2p
    end type block_form_t
 
-   complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
-   !> Coefficients below this part of the largest are rounding.
+   complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)   !< the imaginary unit, a quarter turn
+   !> Coefficients below this part of the largest are rounding of the elimination.
    real(wp), parameter :: zero_coefficient = 4096.0_wp*epsilon(1.0_wp)
-   !> Equations that are too many agree if they differ by less than this part of their terms. The numbers of the deck
-   !> have 11 digits, and the elimination may lose two. Newton's method then decides with the exact equations.
+   !> Redundant equations agree if they differ by less than this part of their terms. The numbers of the deck have 11
+   !> digits, and the elimination may lose two. Newton's method then decides with the exact equations.
    real(wp), parameter :: surplus_part = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
-   !> Within a closing tolerance they agree if they differ by less than so many times that tolerance.
+   !> With a closing tolerance redundant equations agree if they differ by less than this many times the tolerance: the
+   !> elimination may lose one digit.
    real(wp), parameter :: surplus_per_closing = 10.0_wp
 
    !> An equation Re(l conj(factor w)) = value, with w a direction.
    type :: projection_t
-      complex(wp), allocatable :: l(:)                !< (n + 1) a linear form, its constant part first
+      complex(wp), allocatable :: l(:)                !< (n + 1) a linear form, its constant first, unit of the loop
       real(wp) :: size_of = 0.0_wp                    !< the sum of the sizes of its terms, in the unit of the loop
-      complex(wp) :: factor = 1.0_wp
-      integer :: at = 0                               !< the number of w in the block; 0: w = 1
-      real(wp) :: value = 0.0_wp
+      complex(wp) :: factor = 1.0_wp                  !< of size 1
+      integer :: at = 0                               !< the column of w in the block; 0: w = 1
+      real(wp) :: value = 0.0_wp                      !< of the projection, in the unit of the loop
    end type projection_t
 
    !> The equations of a system before the elimination.
    type :: bilinear_builder_t
-      integer :: linear = 0, bilinear = 0             !< how many there are of each kind
+      integer :: linear = 0, bilinear = 0             !< how many there are of each kind so far
       complex(wp), allocatable :: a(:, :)             !< (0:n, linear): sum over k of a_k x_k = 0
-      complex(wp), allocatable :: c(:, :, :)          !< (0:n, 0:n, bilinear)
-      real(wp), allocatable :: size_of(:)             !< (bilinear) of the terms of each: see projection_t
-      type(projection_t), allocatable :: projections(:)
+      complex(wp), allocatable :: c(:, :, :)          !< (0:n, 0:n, bilinear): sum over j and k of x_j c_jk y_k = 0
+      real(wp), allocatable :: size_of(:)             !< (bilinear) the sum of the sizes of the terms of each
+      type(projection_t), allocatable :: projections(:)   !< those to be added
    end type bilinear_builder_t
 
 contains
 
-   !> Makes the system of a block, for given values of earlier blocks and drives.
+   !> Makes the bilinear system of a block, for given values of earlier blocks and drives.
    subroutine make_form(b, x, i, s, form)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      type(state_t), intent(inout) :: s      !< with the values of earlier blocks and drives; the known parts change
-      type(block_form_t), intent(out) :: form
+      type(state_t), intent(inout) :: s      !< with values of earlier blocks and drives; given parts of loops are set
+      type(block_form_t), intent(out) :: form   !< is_lacking, is_impossible: without a system
       type(bilinear_builder_t) :: d
       integer :: m
 
@@ -88,14 +90,15 @@ contains
       end associate
    end subroutine make_form
 
-   !> Adds the equation of a loop of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
+   !> Adds the linear equation of a loop of angles, w = exp(i phi) w_less, or of a slide, z = s w. If both angles are in
+   !> one column, there is no equation.
    pure subroutine add_angles(b, x, i, loop, s, form, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      integer, intent(in) :: loop            !< the number of the loop
-      type(state_t), intent(in) :: s
-      type(block_form_t), intent(in) :: form
+      integer, intent(in) :: loop            !< the number of the loop, of kind loop_angles
+      type(state_t), intent(in) :: s         !< with the drives and earlier blocks
+      type(block_form_t), intent(in) :: form   !< with `turns`
       type(bilinear_builder_t), intent(inout) :: draft
       complex(wp) :: ratio
       integer :: less
@@ -116,14 +119,14 @@ contains
       end associate
    end subroutine add_angles
 
-   !> Adds the equations of a vector loop: each a projection of the loop.
+   !> Adds the equations of a vector loop to the projections: x, y, or the projection on a direction.
    subroutine add_loop(b, x, i, loop, s, n, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       integer, intent(in) :: loop            !< the number of the loop
-      integer, intent(in) :: n               !< unknowns of the block
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: n               !< how many unknowns the block has
+      type(state_t), intent(in) :: s         !< with the drives, earlier blocks, and given parts of loops
       type(bilinear_builder_t), intent(inout) :: draft
       type(projection_t) :: one
 
@@ -142,33 +145,34 @@ contains
 
    contains
 
-      !> Adds the projection for a row.
+      !> Adds the projection `one` with the value of a row.
       subroutine add(row)
-         integer, intent(in) :: row          !< its number in the block
+         integer, intent(in) :: row          !< the number of the row in the block
 
          one%value = given(b, x, i, row, s)
          draft%projections = [draft%projections, one]
       end subroutine add
    end subroutine add_loop
 
-   !> Gives the factor of an unknown: 1 for a direction of the block, otherwise the known direction.
+   !> Gives the factor that a direction has in a linear form: 1 for an unknown direction of the block, otherwise the
+   !> direction w itself, of size 1.
    pure complex(wp) function direction_factor(column, unknown, s) result(factor)
-      integer, intent(in) :: column          !< of the unknown in its block; 0: it is known
-      integer, intent(in) :: unknown         !< the number of the unknown
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: column          !< of the angle in the block; 0: an earlier block has it
+      integer, intent(in) :: unknown         !< the number of the angle
+      type(state_t), intent(in) :: s         !< with earlier blocks
 
       factor = 1.0_wp
       if (column == 0) factor = cmplx(s%u(unknown)%c, s%u(unknown)%s, wp)
    end function direction_factor
 
-   !> Finds the linear form of a loop in 1 and the unknowns of a group, and the size by which rounding is measured.
+   !> Finds the closure error of a loop as a linear form in 1 and the unknowns of a group, and the size of its terms.
    pure subroutine find_form(b, x, loop, s, line, size_of)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: loop            !< the number of the loop
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with earlier blocks, and the loop's given part
       complex(wp), intent(out) :: line(0:)   !< (0:n) coefficients, in the unit of the loop
-      real(wp), intent(out) :: size_of       !< the sum of |terms| of known length, in the unit of the loop
+      real(wp), intent(out) :: size_of       !< the sum of |terms|, an unknown slide as 1, in the unit of the loop
       complex(wp) :: factor
       real(wp) :: slide
       integer :: k
@@ -202,11 +206,11 @@ contains
       end associate
    end subroutine find_form
 
-   !> Adds the projections of the draft as equations. Two projections of one loop, in any units, on different directions
-   !> that turn together are one linear equation: the components of a closed loop, or a driven slide and its guide. The
-   !> others are bilinear.
+   !> Adds the projections as equations. Two projections of one loop, in any units, on different directions that turn
+   !> together are one linear equation: the components of a closed loop, or a driven slide and its guide. Any other
+   !> projection is a bilinear equation.
    subroutine add_projections(draft)
-      type(bilinear_builder_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft   !< with projections; equations are added
       logical :: is_done(size(draft%projections))
       real(wp) :: turn, ratio
       integer :: j, k, m
@@ -222,6 +226,7 @@ contains
                   m = maxloc(abs(one%l), 1)
                   ratio = real(other%l(m)/one%l(m))
                   if (maxval(abs(other%l - ratio*one%l)) > zero_coefficient*maxval(abs(other%l))) cycle
+
                   ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
                   draft%linear = draft%linear + 1
                   draft%a(:, draft%linear) = one%l
@@ -230,10 +235,11 @@ contains
                   is_done([j, k]) = .true.
                end associate
             end do
+
             if (is_done(j)) cycle
             draft%bilinear = draft%bilinear + 1
             associate (c => draft%c(:, :, draft%bilinear), at => one%at + 1)
-               ! associate loses the lower bound: element 1 is that of 1.
+               ! `c` counts from 1: element 1 is the coefficient of 1.
                c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
                c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
                c(1, 1) = c(1, 1) - one%value
@@ -243,10 +249,11 @@ contains
       end do
    end subroutine add_projections
 
-   !> Adds w w' = 1 and z w' = z' w for all unknowns, and puts 1 for w w' in the other equations.
+   !> Adds the bilinear equations w w' = 1 of directions and z w' = z' w of slides, and puts 1 for w w' in the other
+   !> equations.
    subroutine add_pairs(form, draft)
-      type(block_form_t), intent(in) :: form
-      type(bilinear_builder_t), intent(inout) :: draft
+      type(block_form_t), intent(in) :: form   !< with `turns`
+      type(bilinear_builder_t), intent(inout) :: draft   !< with all other equations
       integer :: k, j
 
       do k = 1, size(form%turns)
@@ -269,12 +276,12 @@ contains
       end do
    end subroutine add_pairs
 
-   !> Eliminates the linear equations. Equations that follow from others are left out. Of more independent equations
-   !> than unknowns, combinations are taken.
+   !> Makes the system by eliminating the linear equations. Equations that follow from others are left out. Of more than
+   !> 2p independent equations, the system has 2p combinations, and form%more the rest.
    subroutine reduce(form, draft, level)
-      type(block_form_t), intent(inout) :: form
-      type(bilinear_builder_t), intent(in) :: draft
-      real(wp), intent(in) :: level          !< a smaller part of the terms is rounding: the equation follows
+      type(block_form_t), intent(inout) :: form   !< basis, system and findings are set
+      type(bilinear_builder_t), intent(in) :: draft   !< with all equations
+      real(wp), intent(in) :: level          !< an equation follows from others if its rest is below this part of it
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: size_of
       integer :: p, j, k, count_of
@@ -288,12 +295,13 @@ contains
       do j = 1, draft%bilinear
          associate (one => c(:, :, count_of + 1))
             one = matmul(transpose(basis), matmul(draft%c(:, :, j), conjg(basis)))
-            ! The rest may be only rounding: it is compared with the terms and with their factors.
+            ! The rest `one` of an equation may be only rounding: it is compared with the terms and their factors.
             size_of = max(draft%size_of(j), maxval(abs(draft%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))
-            ! Of angles that differ by what is given one equation is left twice. The part `left` of a combination of
-            ! those before is rounding; `independent` are orthogonal combinations of them, of length 1.
+
+            ! Two angles with a given difference leave one equation twice. `independent` are orthogonal combinations, of
+            ! length 1, of the equations before; `left` is the part of the equation that is orthogonal to them.
             left = reshape(one, [(p + 1)**2])
             do k = 1, size(independent, 2)
                left = left - dot_product(independent(:, k), left)*independent(:, k)

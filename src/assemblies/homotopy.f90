@@ -5,8 +5,8 @@
 !>
 !> With random complex forms no two paths meet before t = 0. Each isolated solution is the end of a path, and each set
 !> of others has the end of one (Morgan and Sommese, Appl. Math. Comput. 24 (1987) 101-113; Sommese and Wampler, The
-!> Numerical Solution of Systems of Polynomials, 2005). The random numbers are always the same. Coordinates are
-!> homogeneous, x . u = 1 and y . v = 1 with random u and v: paths to infinity have ends like other paths.
+!> Numerical Solution of Systems of Polynomials, 2005). Each run has equal random numbers. Coordinates are homogeneous,
+!> x . u = 1 and y . v = 1 with random u and v: paths to infinity have ends like other paths.
 module homotopy
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use plane_vectors, only: pi
@@ -16,12 +16,12 @@ module homotopy
    private
    public :: follow_paths
 
-   !> The paths of h = f + t more from the solutions of g = f + more. z: x and y without their first coordinates, which
-   !> the start's chart gives.
+   !> The paths of h = f + t more from the solutions of g = f + more, in the coordinates z: x and y without their first
+   !> coordinates, which the chart of the start gives.
    type :: paths_t
       integer :: p = 0                                      !< unknowns of each group
-      complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p)
-      real(dp) :: t = -1.0_dp                               !< the last one for which h was found
+      complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p) coefficients of the equations
+      real(dp) :: t = -1.0_dp                               !< the last t for which h was found
       complex(dp), allocatable :: h(:, :, :)                !< (0:p, 0:p, 2p) at this t
    end type paths_t
 
@@ -31,36 +31,39 @@ module homotopy
    !> another. Paths that almost meet at some t are apart by about the root of the least step there. Therefore,
    !> below the least step by the first tenth, this limit falls with the root of the step.
    real(dp), parameter :: max_prediction_error = 1.0e-3_dp
-   !> Corrections below this part of z are rounding. On the way to an end, a correction below its root is the last,
-   !> since Newton's method leaves the square: near a singular end rounding keeps corrections above a smaller part.
+   !> Corrections below this part of z are rounding. On the way to an end, a correction below the root of this part is
+   !> the last, since Newton's method leaves the square: near a singular end rounding keeps corrections above a smaller
+   !> part.
    real(dp), parameter :: path_rounding = 1.0e-11_dp
-   integer, parameter :: max_corrections = 4
-   !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
-   !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
+   integer, parameter :: max_corrections = 4   !< each squares the one before: 1E-3 becomes rounding in three
+   !> From `t_near_end` on t falls by tenths, and from each tenth the end is tried in a few steps. A path that does not
+   !> reach its end in this way has a singular end, unless a neighbour is nearer than about the root of the last t.
    real(dp), parameter :: tenth = 0.1_dp, t_near_end = tenth
-   !> The first step and the least, parts of the way: to `t_near_end`, by the first tenth, and to the end. Before
-   !> `least_tenths` a tenth has the least step to `t_near_end`: a path that fails there is lost.
+   !> The first step and the least, as parts of the way: from t = 1 to `t_near_end`, by a tenth, and to the end. In the
+   !> first `least_tenths` tenths the least step is the one to `t_near_end`: a path that fails there is lost.
    real(dp), parameter :: steps_near_end(2) = [0.02_dp, 1.0e-9_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
    real(dp), parameter :: steps_to_end(2) = 0.3_dp
+   !> Tenths by which t falls at most: three digits are left above rounding.
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
    real(dp), parameter :: least_power = 0.04_dp
-   !> Powers of ten that t must fall before a failed path is sorted.
+   !> Tenths by which t must fall before a path that fails is classified as infinite or singular.
    integer, parameter :: least_tenths = 4
-   !> They may be fewer nearer to infinity than this (see `finiteness`), if x . u falls with this power or more.
+   !> Fewer tenths are enough if `finiteness` is below this, and falls with this power of t or more.
    real(dp), parameter :: near_infinity = 1.0e-3_dp, sure_power = 0.5_dp
-   !> Ends that differ by less, in parts of z, are one.
+   !> Regular ends that differ by less, in parts of z, are one: half of all digits.
    real(dp), parameter :: same_end_tolerance = sqrt(epsilon(1.0_dp))
 
 contains
 
-   !> Finds the ends of all paths of a system. Paths from a given start are tried first; if one of them fails, all begin
-   !> at random forms, and leave a start from which the paths of a similar system are short.
+   !> Finds the ends of all paths of a system. Paths from a given start are tried first. If there is no start of this p,
+   !> or one of its paths fails, all paths begin at random forms and leave a start: from it the paths of a similar
+   !> system are short.
    subroutine follow_paths(bilinear, start, ends)
-      type(bilinear_t), intent(in) :: bilinear   !< p from 1
-      !> Of the paths. If it is none for that p, or fails: then points on all paths, if all come so far.
+      type(bilinear_t), intent(in) :: bilinear   !< the system, p from 1
+      !> The given start. After paths from random forms: their points at t = t_near_end, if all come so far.
       type(path_start_t), allocatable, intent(inout) :: start
-      type(ends_t), intent(out) :: ends
+      type(ends_t), intent(out) :: ends          !< with the number of paths that failed
       type(path_start_t) :: own
       logical :: is_done
 
@@ -73,8 +76,8 @@ contains
       call follow_all(bilinear, own, ends, start)
    end subroutine follow_paths
 
-   !> Makes the start of the paths. Solution number k takes the k-th choice of half of the equations. Their forms in x
-   !> are zero there, and the forms in y of the others.
+   !> Makes a start of paths from random forms, with its C(2p, p) solutions. Solution number k takes the k-th choice of
+   !> half of the equations: at it their forms in x are zero, and the forms in y of the other half.
    subroutine make_start(group_size, start)
       integer, intent(in) :: group_size      !< p, unknowns of each group
       type(path_start_t), intent(out) :: start
@@ -115,15 +118,15 @@ contains
 
    !> Gives a random complex number of size 1 (Park and Miller, Comm. ACM 31 (1988) 1192-1201).
    complex(dp) function on_circle(seed) result(z)
-      integer, intent(inout) :: seed   !< 1 to 2^31 - 2; then the next one
+      integer, intent(inout) :: seed   !< 1 to 2^31 - 2; then the next seed
 
-      ! Schrage's way: 16807 seed modulo 2^31 - 1 in the range of integers.
+      ! 16807 seed modulo 2^31 - 1 in the range of integers, by Schrage's decomposition.
       seed = 16807*mod(seed, 127773) - 2836*(seed/127773)
       if (seed < 0) seed = seed + huge(seed)
       z = exp(cmplx(0.0_dp, 2.0_dp*real(pi, dp)*(real(seed, dp)/real(huge(seed), dp)), dp))
    end function on_circle
 
-   !> Finds the point (p) at which p linear forms in p unknowns are zero.
+   !> Finds the point (p) at which p random linear forms in p unknowns are zero.
    function common_zero(forms) result(z)
       complex(dp), intent(in) :: forms(0:, :)   !< (0:p, p) of each form the constant and the coefficients
       complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2)), x(size(forms, 2), 1)
@@ -135,7 +138,7 @@ contains
       z = x(:, 1)
    end function common_zero
 
-   !> Goes to the next of all choices of numbers from 1 to n, in increasing order. The last choice stays.
+   !> Replaces a choice of numbers from 1 to n by the next choice in lexicographic order. The last choice stays.
    subroutine choose_next(chosen, n)
       integer, intent(inout) :: chosen(:)   !< (any number) different numbers in increasing order
       integer, intent(in) :: n              !< the largest number
@@ -148,13 +151,13 @@ contains
       end do
    end subroutine choose_next
 
-   !> Follows every path of a system from a start. Two paths that come to one regular end have jumped on the way: the
-   !> second one counts as failed.
+   !> Follows every path of a system from a start. If two paths come to one regular end, one of them has jumped to the
+   !> other on the way: the second counts as failed.
    subroutine follow_all(bilinear, start, ends, near)
       type(bilinear_t), intent(in) :: bilinear
       type(path_start_t), intent(in) :: start   !< for the system's p
-      type(ends_t), intent(out) :: ends
-      !> The points of the paths at t = t_near_end, if all come so far.
+      type(ends_t), intent(out) :: ends         !< the finite ends, and counts
+      !> The points of the paths at t = t_near_end as a start, if all come so far; otherwise it stays.
       type(path_start_t), allocatable, intent(inout), optional :: near
       type(paths_t) :: h
       complex(dp) :: z(2*bilinear%p, size(start%z, 2))
@@ -203,15 +206,16 @@ contains
       ends%list = pack(list(:count_of), .not. is_twin(:count_of))
    end subroutine follow_all
 
-   !> Follows a path from t = t_near_end to its end. If a finite end is not found, `ending` is the last point.
+   !> Follows a path from t = t_near_end to its end, which may be finite, singular or at infinity. The point of a
+   !> singular end, or of one at infinity, is the last point that was reached.
    subroutine follow_to_end(bilinear, paths, chart, start, ending, is_infinite, is_done)
       type(bilinear_t), intent(in) :: bilinear
       type(paths_t), intent(inout) :: paths     !< of the system
       complex(dp), intent(in) :: chart(:, :)    !< (p, 2) of the start
       complex(dp), intent(in) :: start(:)       !< (2p) z at t = t_near_end
-      type(path_end_t), intent(inout) :: ending
-      logical, intent(out) :: is_infinite       !< it is at infinity
-      logical, intent(out) :: is_done           !< it was found
+      type(path_end_t), intent(inout) :: ending   !< the end
+      logical, intent(out) :: is_infinite       !< the end is at infinity
+      logical, intent(out) :: is_done           !< the end was classified; otherwise the path has failed
       complex(dp), dimension(size(start)) :: z, last
       real(dp) :: t, step, try, finite(0:max_tenths)
       integer :: k
@@ -226,6 +230,7 @@ contains
          if (k > least_tenths .and. finite(k) <= infinity_level) then
             if (power_of(finite(:k)) >= sure_power) exit
          end if
+
          last = z
          try = steps_to_end(1)
          call follow(paths, t, 0.0_dp, try, steps_to_end(2), last, is_done)
@@ -251,7 +256,7 @@ contains
 
    contains
 
-      !> Puts the homogeneous coordinates of a point into the end.
+      !> Sets the end to a point, in homogeneous coordinates.
       subroutine record_end(root)
          complex(dp), intent(in) :: root(:)   !< (2p) z
 
@@ -260,9 +265,10 @@ contains
       end subroutine record_end
    end subroutine follow_to_end
 
-   !> Tells whether a path goes to infinity, as a power of t. A few values show it only if they fall fast.
+   !> Tells whether a path goes to infinity: its finiteness falls as a power of t. A few values tell this only if they
+   !> fall fast; fewer than three never do.
    pure logical function falls(finite)
-      real(dp), intent(in) :: finite(:)      !< (any number) its `finiteness`, one for each tenth of t
+      real(dp), intent(in) :: finite(:)      !< (any number) the finiteness of the path, one for each tenth of t
       real(dp) :: power
 
       associate (k => size(finite))
@@ -274,34 +280,36 @@ contains
       end associate
    end function falls
 
-   !> Gives the power of t with which `finiteness` fell in the last two tenths.
+   !> Gives the power of t with which the finiteness of a path fell in the last two tenths.
    pure real(dp) function power_of(finite)
-      real(dp), intent(in) :: finite(:)      !< (3 or more) as `falls`
+      real(dp), intent(in) :: finite(:)      !< (3 or more) the finiteness, one for each tenth of t
 
       power_of = 0.5_dp*log10(finite(size(finite) - 2)/finite(size(finite)))
    end function power_of
 
-   !> Follows a path between two values of t: the tangent by Runge and Kutta's rule, then Newton's correction. Steps are
-   !> divided down to the least. If this fails, the point is the last one found.
+   !> Follows a path between two values of t. A step is predicted by Runge and Kutta's rule and corrected by Newton's
+   !> method; a step that fails is made shorter, down to the least.
    subroutine follow(paths, from, to, step, least, point, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(inout) :: step        !< the first, afterwards the one before the end, parts of the way
-      real(dp), intent(in) :: least          !< the least, part of the way
-      complex(dp), intent(inout) :: point(:) !< (2p) z at the first t; then at the second
-      logical, intent(out) :: is_done        !< the second t is reached
+      real(dp), intent(in) :: from, to       !< the two values of t
+      real(dp), intent(inout) :: step        !< the first step, afterwards the step for going on, as parts of the way
+      real(dp), intent(in) :: least          !< the least step, as a part of the way
+      complex(dp), intent(inout) :: point(:) !< (2p) z at `from`; then at `to`, or the last point that was reached
+      logical, intent(out) :: is_done        !< `to` was reached
       complex(dp), dimension(size(point)) :: tangent, next, next_tangent
       real(dp) :: s, h, correction, t, rate
 
       s = 0.0_dp
       call correct(paths, from, point, tangent, correction, is_done)
       if (.not. is_done) return
+
       do
          h = min(step, 1.0_dp - s)
          call predict(paths, from, to, s, h, point, tangent, next, is_done)
          call find_t(from, to, s + h, t, rate)
          if (is_done) call correct(paths, t, next, next_tangent, correction, is_done)
          if (is_done) is_done = correction <= max_prediction_error*sqrt(h/steps_by_tenth(2))
+
          if (is_done) then
             point = next
             tangent = next_tangent
@@ -317,13 +325,13 @@ contains
       is_done = .false.
    end subroutine follow
 
-   !> Finds t on the way between two of its values. In a tenth it falls by equal factors, since z goes with a power of t
-   !> near a singular end.
+   !> Finds t at a part of the way between two of its values. On the way by a tenth t falls by equal factors, since z
+   !> goes with a power of t near a singular end; otherwise evenly.
    pure subroutine find_t(from, to, covered, t, rate)
-      real(dp), intent(in) :: from, to       !< values of t
+      real(dp), intent(in) :: from, to       !< the two values of t
       real(dp), intent(in) :: covered        !< part of the way, 0 to 1
       real(dp), intent(out) :: t             !< the value there
-      real(dp), intent(out) :: rate          !< its derivative by the part of the way
+      real(dp), intent(out) :: rate          !< the derivative of t by the part of the way
 
       rate = to - from
       t = from + covered*rate
@@ -332,17 +340,17 @@ contains
       rate = t*log(to/from)
    end subroutine find_t
 
-   !> Predicts z after a step along the tangent, by Runge and Kutta's rule of fourth order. It fails if a tangent does
-   !> not exist or the step is longer than the point is large.
+   !> Predicts z after a step by Runge and Kutta's rule of fourth order. The prediction fails if a tangent does not
+   !> exist, or if z changes by more than its size.
    subroutine predict(paths, from, to, covered, step, point, tangent, next, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: from, to       !< values of t
+      real(dp), intent(in) :: from, to       !< the two values of t of the way
       real(dp), intent(in) :: covered        !< part of the way before the step
       real(dp), intent(in) :: step           !< part of the way
       complex(dp), intent(in) :: point(:)    !< (2p) z before the step
-      complex(dp), intent(in) :: tangent(:)  !< (2p) its derivative by t
-      complex(dp), intent(out) :: next(:)    !< (2p) z after the step
-      logical, intent(out) :: is_done        !< `next` was found
+      complex(dp), intent(in) :: tangent(:)  !< (2p) the derivative of z by t there
+      complex(dp), intent(out) :: next(:)    !< (2p) z after the step; of no use if the prediction fails
+      logical, intent(out) :: is_done        !< the prediction has not failed
       real(dp), parameter :: stage_places(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: stage_weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), slope(size(point), 1)
@@ -366,14 +374,16 @@ contains
       is_done = size_of(next - point) <= size_of(point)
    end subroutine predict
 
-   !> Corrects a point by Newton's method. It fails if the first correction is not small, or a later one not smaller.
+   !> Corrects a point of a path by Newton's method. The correction fails if the first step is above
+   !> `max_prediction_error`, a later step is not at most half of the one before, or `max_corrections` steps are not
+   !> enough.
    subroutine correct(paths, t, point, tangent, correction, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: t              !< of the homotopy
-      complex(dp), intent(inout) :: point(:) !< (2p) z
-      complex(dp), intent(out) :: tangent(:) !< (2p) its derivative by t, before the last correction
-      real(dp), intent(out) :: correction    !< the first one, relative to the point
-      logical, intent(out) :: is_done        !< z is found
+      real(dp), intent(in) :: t              !< the t of the point
+      complex(dp), intent(inout) :: point(:) !< (2p) z; of no use if the correction fails
+      complex(dp), intent(out) :: tangent(:) !< (2p) the derivative of z by t, before the last step
+      real(dp), intent(out) :: correction    !< the first step, as a part of the point's size
+      logical, intent(out) :: is_done        !< the correction has not failed
       complex(dp) :: a(size(point), size(point)), r(size(point), 2)
       integer :: k
       real(dp) :: now, before
@@ -395,10 +405,10 @@ contains
       end do
    end subroutine correct
 
-   !> Solves linear equations for several right-hand sides.
+   !> Solves complex linear equations for several right-hand sides.
    subroutine solve(a, sides, is_done)
       complex(dp), intent(inout) :: a(:, :)  !< (n, n) the matrix, then its factors
-      complex(dp), intent(inout) :: sides(:, :)   !< (n, any number) right-hand sides, then solutions
+      complex(dp), intent(inout) :: sides(:, :)   !< (n, any number) right-hand sides, then solutions if there are any
       logical, intent(out) :: is_done        !< the matrix is not singular
       integer :: pivots(size(sides, 1)), info
 
@@ -409,7 +419,7 @@ contains
       end associate
    end subroutine solve
 
-   !> Gives the largest real or imaginary part of a point.
+   !> Gives the size of the largest real or imaginary part of a point.
    pure real(dp) function size_of(point)
       complex(dp), intent(in) :: point(:)    !< (2p) z
       integer :: k
@@ -420,13 +430,14 @@ contains
       end do
    end function size_of
 
-   !> Finds the residual of the homotopy and its derivatives. Most calls are at the t of the call before.
+   !> Finds the residual of the homotopy at a point, and its derivatives. Most calls have the t of the call before:
+   !> `paths` keeps the coefficients.
    subroutine assemble(paths, t, point, a, residual, slope)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: t              !< of the homotopy
+      real(dp), intent(in) :: t              !< the t of the point
       complex(dp), intent(in) :: point(:)    !< (2p) z
       complex(dp), intent(out) :: a(:, :)    !< (2p, 2p) the Jacobian by z
-      complex(dp), intent(out) :: residual(:)   !< (2p)
+      complex(dp), intent(out) :: residual(:)   !< (2p) the values of the equations
       complex(dp), intent(out) :: slope(:)   !< (2p) minus the derivative by t
       complex(dp), dimension(0:paths%p) :: x, y, by_x
       complex(dp) :: by_y, along
@@ -439,6 +450,7 @@ contains
          y = [(1.0_dp, 0.0_dp), point(p + 1:)]
          residual = 0.0_dp
          slope = 0.0_dp
+
          do j = 1, 2*p
             by_x = 0.0_dp
             do k = 0, p

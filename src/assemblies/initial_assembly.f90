@@ -1,10 +1,10 @@
 !> The first instant: the assembly that is nearest to the initial guess, by the distance that card ASSEMBLY prints.
 !> Newton's method starts from the guess, block by block in solving order. Its assembly is kept if the bound of Newton
-!> and Kantorovich leaves no other one as near. Otherwise a search goes through the positions of the blocks, depth first
-!> and the nearest first. It leaves out all that is further than the nearest assembly so far.
+!> and Kantorovich leaves no other assembly as near. Otherwise a search goes through the positions of the blocks, depth
+!> first and the nearest first. It leaves out all positions that are further than the nearest assembly so far.
 !>
 !> All blocks are assembled, also those that no table needs: the rows on paper choose no assembly. If a block has no
-!> position with any of the blocks below it, the others are assembled without it.
+!> position with any positions of the blocks on which it builds, the other blocks are assembled without it.
 module initial_assembly
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -22,22 +22,24 @@ module initial_assembly
    private
    public :: solve_first, places_of, squared_distances, is_nearer, same_assembly_tolerance
 
-   !> The distance of no assembly: more than any distance, and its square is in range.
+   !> The distance of no assembly: above any distance, and its square is in range.
    real(wp), parameter :: no_distance = 0.5_wp*sqrt(huge(1.0_wp))
 
    !> Positions of one block, nearest to the guess first.
    type :: candidates_t
-      real(wp), allocatable :: x(:, :)                  !< (unknowns of the block, positions)
+      real(wp), allocatable :: x(:, :)                  !< (unknowns of the block, positions) rad or unit of the loop
       real(wp), allocatable :: distance(:)              !< (positions) from the guess: roots of `squared_distances`
-      real(wp) :: beyond = no_distance                  !< the distance of positions not looked for, at least
-      logical :: are_all = .true.                       !< no nearer one can be missing
+      real(wp) :: beyond = no_distance                  !< lower bound of the distance of positions not searched for
+      logical :: are_all = .true.                       !< no nearer position can be missing
       integer :: chosen = 0                             !< the number of the position in use; 0: none
-      type(solve_report_t) :: ending                     !< how the search for a position ended
+      type(solve_report_t) :: ending                    !< of Newton's method for the block
    end type candidates_t
 
-   !> Unknowns of a group of which all positions are enumerated, at most: eight in both groups, 70 paths.
+   !> Unknowns of a group at most if all positions are enumerated: eight in both groups, 70 paths. More would delay
+   !> every deck.
    integer, parameter :: max_first_group = 4
-   !> Places count as off by no more than this part of the characteristic length: a deck may give only angles.
+   !> The distance of a link from its guess counts up to this part of the characteristic length: a deck may give only
+   !> angles.
    real(wp), parameter :: far_place = 0.25_wp
    !> Positions that differ by less are one (rad, characteristic lengths).
    real(wp), parameter :: same_assembly_tolerance = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
@@ -45,28 +47,29 @@ module initial_assembly
    real(wp), parameter :: same_singular_assembly_tolerance = sqrt(same_assembly_tolerance)
    !> Two distances are about equal if one is at least this part of the other.
    real(wp), parameter :: about_equal = 0.8_wp
-   !> Blocks that are assembled at most.
+   !> Searches for positions of a block at most: combinations of positions grow exponentially with the blocks.
    integer, parameter :: max_solves = 3000
    !> Distances that differ by less than this part are equal: rounding shall not choose.
    real(wp), parameter :: equal_distance_part = 64.0_wp*sqrt(epsilon(1.0_wp))
 
 contains
 
-   !> Solves for the first motion. If there is no assembly, the blocks that need no missing one are solved.
+   !> Solves for the first motion, in the assembly that is nearest to the guess. If there is no assembly, needed blocks
+   !> before the first needed block without a position are solved.
    subroutine solve_first(b, x, guess, w, s, convergence)
-      type(blocks_t), intent(in) :: b
+      type(blocks_t), intent(in) :: b        !< solvable, with its needed blocks
       type(geometry_t), intent(in) :: x
-      type(guess_t), intent(inout) :: guess
+      type(guess_t), intent(inout) :: guess  !< by `assign_guess`; its angles get whole turns, its choices are set
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s      !< with the values of the drives; then the first motion
-      type(solve_report_t), intent(out) :: convergence   !< how the search ended
+      type(solve_report_t), intent(out) :: convergence   !< of the needed blocks, or of the block without a position
       type(candidates_t), dimension(size(b%list)) :: found, by_deck
       type(solve_report_t) :: rest
       real(wp) :: implied(3, size(guess%links, 2)), turn(0:b%orientations), nearest
       logical :: is_complete, is_implied(size(implied, 2))
       integer :: places(2, size(implied, 2)), k, i
 
-      ! Whole turns of a drive close nothing, and the links would have to travel them.
+      ! The guess takes over the whole turns of the drives: otherwise Newton's method would have to go through them.
       s%u%value = guess%values
       do k = 1, size(b%needed)
          if (.not. b%list(b%needed(k))%explicit) call add_turns(b, x, b%needed(k), s)
@@ -82,7 +85,7 @@ contains
       is_complete = is_solved(convergence) .and. is_solved(rest)
       if (is_complete) is_complete = without_length(x, s, [(i, i=1, size(x%cylinders))]) == 0
 
-      ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
+      ! The guess may have better angles than the deck: the links of a class turn by the angle of its first link.
       turn = 0.0_wp
       associate (class => b%tree%orientation, offset => x%equations%axes%angle_offset)
          do k = size(class), 1, -1
@@ -120,14 +123,14 @@ contains
       end if
    end subroutine solve_first
 
-   !> Tells whether no other assembly can be about as near to the goal as the one in `s`. There is none if that is at
-   !> the guess itself. Otherwise an angle of the first block that differs is off by the separation of its positions, at
-   !> least.
+   !> Tells whether no other assembly can be about as near to the goal as the assembly in `s`. There is none if the
+   !> assembly is at the goal itself. Otherwise, in another assembly, an angle of the first block that differs is off by
+   !> the separation of the block's positions, at least.
    logical function is_surely_nearest(b, x, s, places, goal) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s                    !< with an assembly
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       real(wp) :: square(2, size(goal, 2)), later
       integer :: i
@@ -150,23 +153,25 @@ contains
    subroutine find_nearest(b, x, guess, w, s, places, goal, is_complete, found, distance)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(guess_t), intent(inout) :: guess
+      type(guess_t), intent(inout) :: guess             !< where Newton's method starts; starts of paths may be added
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      type(state_t), intent(inout) :: s                 !< with the drives; then the values of the nearest assembly
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
-      logical, intent(in) :: is_complete                !< `s` has an assembly: further ones do not count
-      type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions
-      real(wp), intent(out), optional :: distance       !< root of `squared_distances`; or `no_distance`
+      logical, intent(in) :: is_complete                !< `s` has an assembly: assemblies further away do not count
+      type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions; the chosen ones are the assembly
+      !> Of the nearest assembly: sqrt(sum(`squared_distances`)); without an assembly `no_distance`.
+      real(wp), intent(out), optional :: distance       !< rad and characteristic lengths
+
       type(candidates_t), allocatable :: nearest(:)     !< with the nearest assembly so far; not allocated: none
       real(wp) :: values(0:b%unknowns)                  !< of the nearest assembly
       real(wp) :: limit                                 !< assemblies at this distance or more do not count
       real(wp) :: spent(0:size(found))                  !< the square of the distance of all blocks up to this one
-      integer :: latest(size(found))                    !< the last block below that iterates; 0: none
+      integer :: latest(size(found))                    !< the last block below it that iterates; 0: none
       integer :: seen(size(found))                      !< the number of the choice after which its positions were found
-      integer, dimension(0:b%unknowns) :: changed       !< the number of the choice
-      integer, dimension(0:b%unknowns) :: open          !< 1: not found
-      logical :: is_given_up(size(found))               !< no other positions help it
+      integer, dimension(0:b%unknowns) :: changed       !< the number of the choice that changed it last
+      integer, dimension(0:b%unknowns) :: open          !< 1: its block has no position; otherwise 0
+      logical :: is_given_up(size(found))               !< no other positions of blocks below it give it a position
       integer, allocatable :: below(:)
       integer :: i, k, solves, choices
 
@@ -191,7 +196,7 @@ contains
 
       do while (i > 0)
          if (i > size(found)) then
-            ! An assembly, or all that can be assembled.
+            ! An assembly, or as many blocks as can be assembled.
             nearest = found
             values = s%u%value
             if (any(found%chosen == 0)) exit
@@ -214,7 +219,7 @@ contains
                      cycle
                   end if
 
-                  ! Back to the last block that has another position; of the blocks below, if only these help.
+                  ! Back to the last block that has another position; only to a block below if this block has none.
                   below = [(k, k=1, i)]
                   if (size(found(i)%distance) == 0 .or. .not. limit < no_distance) below = blocks_below(b, i)
                   below = below(:size(below) - 1)
@@ -249,7 +254,8 @@ contains
 
    contains
 
-      !> Finds the positions of the block, unless those that are known still hold.
+      !> Finds the positions of block `i`, unless its last search still holds: no block below has changed since, and
+      !> positions that were not searched for are too far.
       subroutine look_for_positions()
          real(wp) :: budget
 
@@ -261,7 +267,7 @@ contains
       end subroutine look_for_positions
    end subroutine find_nearest
 
-   !> Gives the last block below each block (blocks) that iterates; 0: none does.
+   !> Gives for each block (blocks) the last block on which it builds that is not explicit; 0: there is none.
    pure function iterating_below(b) result(latest)
       type(blocks_t), intent(in) :: b
       integer :: latest(size(b%list)), last(0:b%unknowns), i   ! last: as `latest`, for each unknown
@@ -273,16 +279,16 @@ contains
       end do
    end function iterating_below
 
-   !> Finds the last block of a list that has another position, with which an assembly can be nearer than the limit; 0:
-   !> none has. Later blocks that do not build on this one or a later one are as near as they were, at best.
+   !> Finds the last block of a list that has another position with which an assembly can be nearer than a limit; 0: no
+   !> block has one. Later blocks whose positions do not change with it are, at best, as near as their nearest position.
    pure integer function last_promising(b, list, found, latest, seen, changed, spent, limit) result(k)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: list(:)                    !< (any number) numbers of blocks, in increasing order
       type(candidates_t), intent(in) :: found(:)        !< (blocks) their positions
       integer, intent(in) :: latest(:)                  !< (blocks) the last block below that iterates; 0: none
       integer, intent(in) :: seen(:)                    !< (blocks) the number of the choice after which it was searched
-      integer, intent(in) :: changed(0:)                !< (0:unknowns) the number of the choice
-      real(wp), intent(in) :: spent(0:)                 !< (0:blocks) squares of distances of all blocks up to this one
+      integer, intent(in) :: changed(0:)                !< (0:unknowns) the number of the choice that changed it last
+      real(wp), intent(in) :: spent(0:)                 !< (0:blocks) squared distance of all blocks up to this one
       real(wp), intent(in) :: limit                     !< the distance of an assembly
       real(wp) :: square
       integer :: i, j
@@ -300,20 +306,20 @@ contains
       k = 0
    end function last_promising
 
-   !> Finds the positions of a block, for given values of earlier blocks. First comes the position of Newton's method.
-   !> If all others are further from the goal than the budget, they are not looked for. If there is no position,
-   !> found%ending has the closure error that remains.
+   !> Finds the positions of a block, for given values of earlier blocks. Newton's method from the guess finds the
+   !> first; if all others are further from the goal than the budget, they are not searched for. If there is no
+   !> position, found%ending has the closure error that remains, or the cylinder whose length is below 0.
    subroutine find_candidates(b, x, guess, w, s, i, places, goal, budget, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(guess_t), intent(inout) :: guess
+      type(guess_t), intent(inout) :: guess             !< where Newton's method starts; a start of paths may be added
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                 !< with the values of earlier blocks; the block's own change
       integer, intent(in) :: i                          !< the number of the block
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
-      real(wp), intent(in) :: budget                    !< a distance: the root of `squared_distances`
-      type(candidates_t), intent(out) :: found
+      real(wp), intent(in) :: budget                    !< a distance: the root of a sum of `squared_distances`
+      type(candidates_t), intent(out) :: found          !< the nearest first, none chosen
       type(block_positions_t) :: every
       real(wp), dimension(b%list(i)%shape%n) :: start, least
       real(wp) :: angles
@@ -337,7 +343,7 @@ contains
       do k = 1, size(every%sign_of)
          call record_position(every%x(:, k), every%sign_of(k) == 0)
       end do
-      ! There is one more if Newton's method has found none of them.
+      ! If there is one more, Newton's method has found a position that the enumeration has missed.
       found%are_all = .not. (every%moves .or. every%is_large .or. every%failed > 0) &
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
@@ -359,10 +365,10 @@ contains
 
    contains
 
-      !> Puts a position in its place among those found, unless it is there already. Its angles are brought within half
-      !> a turn of the guess; drives between two angles then add whole turns. Of two positions that are as near, the one
-      !> with the greater first value comes first: rounding shall not choose. A position with a cylinder whose length is
-      !> not above 0 is none.
+      !> Inserts a position into `found`, by its distance, unless it is there already or has a cylinder whose length is
+      !> not above 0. Its angles are brought within half a turn of the guess; drives between two angles then add whole
+      !> turns. Of two positions at equal distances, the one with the greater first value that differs comes first:
+      !> rounding shall not choose. `angles` becomes the distance by the angles of the block.
       subroutine record_position(unknowns, is_singular)
          real(wp), intent(in) :: unknowns(:)   !< (unknowns of the block) rad or unit of the loop
          logical, intent(in) :: is_singular    !< the position is singular
@@ -398,19 +404,20 @@ contains
       end subroutine record_position
    end subroutine find_candidates
 
-   !> Gives the block (cylinders) after which the length of each cylinder is known; 0: only ground moves it.
+   !> Gives the number of the block (cylinders) after which the length of each cylinder is known; 0: ground links have
+   !> both ends.
    pure function last_places(x, places) result(last)
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
       integer :: last(size(x%cylinders)), k
 
       last = [(maxval(places(:, [x%cylinders(k)%i, x%cylinders(k)%j])), k=1, size(last))]
    end function last_places
 
-   !> Finds the pair of the first cylinder in a list that has no length above 0; 0: all have.
+   !> Finds the number of the pair of the first cylinder in a list that has no length above 0; 0: all have one.
    function without_length(x, s, list) result(pair)
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s                    !< with the values of the blocks that move the cylinders
       integer, intent(in) :: list(:)                    !< (any number) numbers of cylinders
       integer :: pair
       type(motion_t) :: q
@@ -430,8 +437,8 @@ contains
       end do
    end function without_length
 
-   !> Gives the block that finds the angle of each link, and the block after which its place is known (2, links); 0:
-   !> none.
+   !> Gives for each link (2, links) the number of the block that finds its angle, and of the block after which its
+   !> position is known; 0: none, for ground links.
    pure function places_of(b, x) result(places)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -450,18 +457,19 @@ contains
       end do
    end function places_of
 
-   !> Tells whether a distance is less than another one by more than rounding. Rounding leaves half of all digits of
-   !> positions that are about singular.
+   !> Tells whether a distance is less than another one by more than rounding, which leaves half of all digits of nearly
+   !> singular positions.
    elemental logical function is_nearer(one, other) result(is)
       real(wp), intent(in) :: one, other                !< distances: roots of `squared_distances`
 
       is = one < other - equal_distance_part*max(other, far_place)
    end function is_nearer
 
-   !> Measures how far the links are from the goal (2, links): the squares of `squared_distances`.
+   !> Measures how far the links of a state are from a goal (2, links): the square of the angle, in rad, and of the
+   !> distance, in characteristic lengths.
    function squares_of(x, s, goal) result(square)
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s                    !< with the values of all unknowns
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       real(wp) :: square(2, size(goal, 2))
       type(motion_t) :: q
@@ -472,18 +480,18 @@ contains
       square = squared_distances(q%position, goal, x%span)
    end function squares_of
 
-   !> Gives the distance of the assembly in `s` from the goal, over all links that a block moves.
+   !> Gives the distance of an assembly from a goal, sqrt(sum(`squared_distances`)) over all links that a block moves.
    real(wp) function distance_of(x, s, places, goal) result(distance)
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      type(state_t), intent(in) :: s                    !< with the assembly
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
 
       distance = sqrt(sum(squares_of(x, s, goal), mask=places > 0))
    end function distance_of
 
    !> Measures how far each link is from its guess (2, links): the square of the angle, in rad, and of the distance, in
-   !> lengths of `span`.
+   !> lengths of `span`, of which `far_place` counts at most.
    pure function squared_distances(position, guess, span) result(square)
       real(wp), intent(in) :: position(:, :)            !< (3, links) x, y, from the origin of `guess`, and rad
       real(wp), intent(in) :: guess(:, :)               !< (3, links) x, y and rad
@@ -494,15 +502,15 @@ contains
       square(2, :) = min(sum(((position(:2, :) - guess(:2, :))/span)**2, dim=1), far_place**2)
    end function squared_distances
 
-   !> Bounds from below how far another position of a block is from the one in `s`: one of its angles is off by so many
-   !> rad. With the Jacobian J and its Lipschitz constant L the bound is 2/(|J^-1| L), by Newton and Kantorovich; 0 at a
-   !> singular position. Of more than two unknowns |J^-1| may be estimated, too small by a part of their number. The
-   !> slides make L larger.
+   !> Bounds from below how far any other position of a block is from its position in `s`: some angle differs by the
+   !> bound, in rad. With the Jacobian J and its Lipschitz constant L the bound is 2/(|J^-1| L), by Newton and
+   !> Kantorovich; 0 at a singular position. With more than two unknowns |J^-1| may be estimated, too small by a factor
+   !> up to their number n: n is put in. Long slides make L larger.
    pure real(wp) function separation_of(b, x, i, s) result(separation)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                          !< the number of the block
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s                    !< with the position, and the findings of its Jacobian
       real(wp) :: bound
       integer :: m, k
 

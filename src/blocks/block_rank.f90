@@ -25,7 +25,7 @@ module block_rank
    real(wp), parameter :: corrected_residual = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp))
    !> A residual below this is the residual of a position.
    real(wp), parameter :: position_residual = max(1.0e-12_wp, 100.0_wp*corrected_residual)
-   !> Blocks of more rows are not decomposed: the decomposition takes the cube of the rows, some seconds for these.
+   !> Blocks of more rows are not decomposed: the time goes with the cube of the rows.
    integer, parameter :: max_decomposed_rows = 1500
 
    !> The singular value decomposition of a block's Jacobian: J = left diag(s) right.
