@@ -1,7 +1,7 @@
 !> The analysis of one mechanism, instant by instant: the motion found, and the remarks about it.
 !>
-!> The motion is followed by blocks, whatever the method: they give the limits, the certificate and the remarks. METHOD
-!> DENSE and METHOD MATRIX solve for the motion at each instant at which the blocks have found one.
+!> The motion is followed by blocks, whatever the method: the blocks give the limits, the certificate and the remarks.
+!> METHOD DENSE and METHOD MATRIX solve for the motion at each instant at which the blocks have found a motion.
 !>
 !> After an instant the analysis is in one of five phases. The motion may stand on a singular position (`singular`).
 !>
@@ -54,27 +54,29 @@ module analysis
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: creeping_part = 1.0e-3_wp
-   !> Near a singular first position the motion begins after a drive has gone so far, in rad or units of its block.
+   !> From a singular first position the motion begins after a drive has gone so far, in rad or units of its block: the
+   !> branches are still close there, and the position is no longer singular.
    real(wp), parameter :: start_offset = 1.0e-3_wp
 
-   !> The phases.
+   !> The phases, as in the module's head.
    enum, bind(c)
       enumerator :: not_begun, at_start, on_motion, lost, beyond
    end enum
 
-   !> The motion that is followed, and what is known of the instants so far.
+   !> The motion that is followed, and the findings at the instants so far.
    type, extends(continuation_t) :: analysis_t
-      integer :: phase = not_begun
-      logical, allocatable :: singular(:)                  !< (blocks) the block is, if the motion stands on a position
+      integer :: phase = not_begun                         !< not_begun, ...
+      !> (blocks) The Jacobian of the block has no inverse there; allocated if the motion stands on a singular position.
+      logical, allocatable :: singular(:)
       real(wp) :: last = 0.0_wp                            !< time of the last instant, but for those beyond a limit
       type(branch_t) :: branch                             !< of the last instant
       type(certificate_counts_t) :: certificate_counts     !< of all instants
-      type(limit_t) :: limits(2)                           !< of the motion that is followed
+      type(limit_t) :: limits(2)                           !< of the motion that is followed, the earlier and the later
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
-      real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
-      !> The motion followed is at a time that is no instant (`evaluate_at`); its place and iterations at the last
-      !> instant.
+      real(wp) :: max_closure_error = 0.0_wp               !< largest of redundant equations, units of loops or rad
+      !> The motion followed is at a time that is no instant (`evaluate_at`); the state of the continuation and the
+      !> iterations at the last instant.
       logical :: is_left = .false.
       type(continuation_state_t) :: left
       integer :: left_iterations = 0
@@ -96,7 +98,7 @@ contains
    subroutine analyze_structure(analysis, m, structure)
       type(analysis_t), intent(out) :: analysis
       type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
-      type(structure_t), intent(inout) :: structure        !< of the mechanism: blocks and geometry are taken over
+      type(structure_t), intent(inout) :: structure        !< of `m`; blocks and geometry are moved away
 
       if (m%method == method_newton) then
          call follow_structure(analysis%continuation_t, m, structure)
@@ -107,10 +109,11 @@ contains
       end if
    end subroutine analyze_structure
 
-   !> Makes an analysis by METHOD NEWTON ready for a variant with the same structure; of no use if that does not fit.
+   !> Makes an analysis by METHOD NEWTON ready for the first instant of a variant of equal structure. If the structure
+   !> does not fit, the analysis is of no use.
    subroutine reuse_analysis(analysis, m, is_done)
-      type(analysis_t), intent(inout) :: analysis          !< of another variant
-      type(mechanism_t), intent(in) :: m
+      type(analysis_t), intent(inout) :: analysis          !< of another variant; then of `m`
+      type(mechanism_t), intent(in) :: m                   !< the variant
       logical, intent(out) :: is_done                      !< the structure fits
       type(continuation_t) :: kept
 
@@ -122,11 +125,11 @@ contains
       if (is_done) call begin_motion(analysis%continuation_t, m)
    end subroutine reuse_analysis
 
-   !> Solves for an instant. Links that no request needs may be left out.
+   !> Solves for an instant, from the last instant on. Links that no request needs may be left out.
    subroutine advance(analysis, t, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< its time
-      type(motion_t), intent(inout) :: found               !< in the deck's units; flagged if it is not found
+      real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
+      type(motion_t), intent(inout) :: found               !< (links) in the deck's units; flagged if it is not found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
@@ -155,12 +158,13 @@ contains
       analysis%last = t
    end subroutine advance
 
-   !> Continues the motion to an instant.
+   !> Continues the motion to an instant, by the way that belongs to the phase (module's head).
    subroutine reach(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< its time
-      type(step_record_t), intent(inout) :: step           !< how that went
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< if it stands on a change point, or returns
+      real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
+      type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
+      !> Not allocated; then the change points on which the motion stands at `t`, or from which it has returned.
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
 
       if (allocated(analysis%singular)) then
          if (.not. any(moving_drives(analysis%path, analysis%last, t))) then
@@ -177,13 +181,13 @@ contains
       end if
    end subroutine reach
 
-   !> Finds the first motion. From a singular first position more than one motion begins: this one begins in the nearest
-   !> assembly close to that position. At the instant another assembly may be nearest, if the step is wide.
+   !> Finds the first motion. From a singular first position more than one motion begins. This motion begins close to
+   !> that position, in the nearest assembly: at an instant further away another assembly may be nearest.
    subroutine begin(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< time
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
+      real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
+      type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< then the change points on which the motion stands
       type(step_record_t) :: to_start
       real(wp) :: near
 
@@ -197,12 +201,14 @@ contains
       call follow(analysis%continuation_t, t, step, list)
    end subroutine begin
 
-   !> Follows the motion from a singular position. Back in time it is as it was, unless a BRANCH card asks for another.
+   !> Follows the motion from a singular position on which it stands. Back in time it is the motion before, unless a
+   !> BRANCH card requests the other branch.
    subroutine leave_position(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< time to which it goes
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
+      real(wp), intent(in) :: t                            !< time to which the motion goes, in the deck's unit
+      type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
+      !> Then the change points on which the motion stands, or from which it has returned.
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t), allocatable :: returns(:)
 
       if ((analysis%t - analysis%last)*(t - analysis%last) < 0.0_wp) then
@@ -219,12 +225,12 @@ contains
          .or. analysis%convergence%singular)) call move_alloc(returns, list)
    end subroutine leave_position
 
-   !> Stays on a singular position, since no drive moves. Blocks without velocities keep their position; the others find
-   !> their velocities and accelerations.
+   !> Stays on a singular position, since no drive moves. Blocks without velocities keep their position; velocities and
+   !> accelerations of the other blocks are solved for.
    subroutine rest(analysis, t, step)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< time until which no drive moves
-      type(step_record_t), intent(inout) :: step
+      real(wp), intent(in) :: t                            !< time until which no drive moves, in the deck's unit
+      type(step_record_t), intent(inout) :: step           !< its ending becomes step_rests
 
       if (analysis%is_left) call restore(analysis%continuation_t, analysis%left)
       call solve_regular_blocks(analysis%continuation_t, t)
@@ -232,12 +238,13 @@ contains
    end subroutine rest
 
    !> Finds the motion at a time that is no instant of the deck, by continuity from the last instant, or from a time
-   !> looked at before: of many in a row each costs a short step. The analysis stays there until `restore_instant`.
+   !> that was evaluated before: of many times in a row each costs a short step. The analysis stays at this time until
+   !> `restore_instant`.
    subroutine evaluate_at(analysis, t, found, is_found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< the time
-      type(motion_t), intent(inout) :: found
-      logical, intent(out) :: is_found                     !< it has a position, velocities and accelerations
+      real(wp), intent(in) :: t                            !< the time, in the deck's unit
+      type(motion_t), intent(inout) :: found               !< (links) in the deck's units; of no use if not found
+      logical, intent(out) :: is_found                     !< it has position, velocities and accelerations
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
 
@@ -262,7 +269,7 @@ contains
       end if
    end subroutine evaluate_at
 
-   !> Follows the motion from the last instant again, if it was left.
+   !> Puts the analysis back at the last instant, if `evaluate_at` has left it.
    subroutine restore_instant(analysis)
       type(analysis_t), intent(inout) :: analysis
 
@@ -272,12 +279,13 @@ contains
       analysis%is_left = .false.
    end subroutine restore_instant
 
-   !> Takes the motion at the end of a step, with certificate and remarks. A regular motion is followed from there on.
+   !> Gives the motion at the end of a step, with certificate and remarks. A regular motion is followed from there on;
+   !> from a singular position the motion before stays the one that is followed.
    subroutine arrive(analysis, step, list, found)
       type(analysis_t), intent(inout) :: analysis
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
-      type(motion_t), intent(inout) :: found
+      type(step_record_t), intent(inout) :: step           !< that has come to the instant
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< its change points; not allocated: none
+      type(motion_t), intent(inout) :: found               !< at the time found%t; (links) in the deck's units
       integer :: was
       logical :: had_missed, crosses, goes_on
 
@@ -300,12 +308,13 @@ contains
          call add_diagnostics(list, found)
          crosses = crosses .or. any(list%other)
       end if
+
       if (analysis%has_missed) then
          call cut(found, -1, flag_not_converged)
          call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, found%t, analysis%work, &
             analysis%state, found)
          analysis%branch = branch_t()
-         ! One remark for instants in a row.
+         ! Of missed instants in a row only the first has the remark.
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
             other=analysis%convergence%ended == ended_elsewhere)], found)
       else
@@ -329,12 +338,12 @@ contains
       end if
    end subroutine arrive
 
-   !> Records the certificate of the position at the end of a step.
+   !> Records the certificate of the position at the end of a step, and counts it.
    subroutine certify(analysis, was, step, crosses)
-      type(analysis_t), intent(inout) :: analysis
-      integer, intent(in) :: was                           !< the phase before: not_begun, ...
-      type(step_record_t), intent(in) :: step
-      logical, intent(in) :: crosses                       !< change points lie on the step
+      type(analysis_t), intent(inout) :: analysis          !< branch and certificate_counts are set
+      integer, intent(in) :: was                           !< the phase before: not_begun, at_start or on_motion
+      type(step_record_t), intent(in) :: step              !< that has come to the instant
+      logical, intent(in) :: crosses                       !< the motion passed change points on the step
 
       if (step%ending == step_rests) then
          analysis%branch = branch_t(kind=min(analysis%branch%kind, branch_same))
@@ -350,12 +359,12 @@ contains
       end associate
    end subroutine certify
 
-   !> Adds the remarks about the first position, or about the first motion after such positions. A motion that began
-   !> near a singular position is no longer near the deck's estimate.
+   !> Adds the remarks about the first position, or about the first motion after positions without a motion. A motion
+   !> that is already followed began near a singular position and gets no remark about the deck's estimate.
    subroutine tell_first(analysis, was, found)
       type(analysis_t), intent(inout) :: analysis
       integer, intent(in) :: was                           !< the phase before: not_begun or at_start
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found               !< remarks are added
 
       if (was == at_start) then
          if (found%known < 2) return
@@ -365,14 +374,15 @@ contains
          analysis%guess, analysis%state, found, analysis%convergence%singular), found)
    end subroutine tell_first
 
-   !> Ends a step that has found no motion. One remark names the equation that is not satisfied or the end of the step.
-   !> The motion is followed from where it was. The instant lies beyond a limit if it is only known that it was not
-   !> reached, or if no substep could be made and it is further on than `near_limit_part` of the step.
+   !> Ends a step that has found no motion at an instant. One remark names the equation that is not satisfied, or the
+   !> end of the motion. The motion is followed again from the instant before. A limit is recorded unless equations
+   !> contradict one another: at `near_limit_part` of the step beyond the last motion if no substep could be made from
+   !> there, otherwise at the instant itself.
    subroutine stop_at(analysis, t, step, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< time of the instant
-      type(step_record_t), intent(in) :: step
-      type(motion_t), intent(inout) :: found
+      real(wp), intent(in) :: t                            !< time of the instant, in the deck's unit
+      type(step_record_t), intent(in) :: step              !< that has not come to the instant
+      type(motion_t), intent(inout) :: found               !< (links) flagged; only links that drives move are known
       type(diagnostic_t), allocatable :: list(:)
       real(wp) :: ahead
       logical :: inconsistent
@@ -381,9 +391,9 @@ contains
       analysis%branch = branch_t()
       inconsistent = analysis%convergence%ended == ended_inconsistent
       if (inconsistent) then
-         ! A drive is one of these equations: not even links that only drives move have a position.
+         ! An equation of a drive may be one that is not satisfied: even links that only drives move have no position.
          call cut(found, -1, flag_inconsistent)
-         ! Measured at the instant itself, not at the end of the last substep.
+         ! The closure error is measured at the instant itself, not at the end of the last substep.
          if (step%tries > 1) call measure_closure_error(analysis%continuation_t, t)
          analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
@@ -401,7 +411,7 @@ contains
          end associate
       else
          ahead = t
-         ! To the infinity of a slide there are more substeps than are tried.
+         ! Up to the infinity of a slide more substeps lie than are tried.
          if (step%ending == step_creeps) ahead = analysis%t + sign(min(abs(t - analysis%t), &
             creeping_part*abs(analysis%t - analysis%place%t)), t - analysis%t)
 
@@ -430,11 +440,12 @@ contains
       if (allocated(analysis%singular)) deallocate (analysis%singular)
    end subroutine stop_at
 
-   !> Leaves out an instant beyond a limit: nothing is solved for. The first of such instants gets the reason.
+   !> Leaves out an instant beyond a limit: no position is solved for. The first of such instants gets the remark about
+   !> the limit, each later one the remark that it lies beyond.
    subroutine skip_instant(analysis, t, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< its time
-      type(motion_t), intent(inout) :: found
+      real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
+      type(motion_t), intent(inout) :: found               !< (links) flagged; only links that drives move are known
       integer :: side
 
       call cut(found, -1, flag_not_converged)
@@ -453,12 +464,12 @@ contains
       analysis%phase = beyond
    end subroutine skip_instant
 
-   !> Takes the motion at found%t by the method, if the blocks have found one, and flags all that does not exist. If all
-   !> drives rest, a motion that has come to a singular position rests there. This does not hold for a first position,
-   !> since undriven links may move.
+   !> Gives the motion of the links at found%t by the method, from the motion that the blocks have found, and flags the
+   !> parts that do not exist. If all drives rest, a motion that has come to a singular position rests there. This does
+   !> not hold for a first position, since undriven links may move.
    subroutine accept_motion(analysis, found)
-      type(analysis_t), intent(inout) :: analysis
-      type(motion_t), intent(inout) :: found
+      type(analysis_t), intent(inout) :: analysis          !< with the blocks' motion
+      type(motion_t), intent(inout) :: found               !< (links) in the deck's units
       integer :: link, last
       logical :: finite
 
@@ -482,18 +493,20 @@ contains
       else
          if (analysis%convergence%singular) call cut(found, 0, flag_singular)
          if (analysis%convergence%rates_inconsistent) call cut(found, 0, flag_inconsistent)
-         ! If rates contradict one another, no link has any.
+         ! If rates contradict one another, no link has velocities.
          if (found%flag == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
             allocated(analysis%dense), found)
       end if
       if (finite) return
-      ! Numbers out of the range of the real kind are not known.
+
+      ! Numbers out of the range of the real kind count as unknown.
       do link = 1, size(found%position, 2)
          last = known_of(found, link)
          if (last == 2 .and. .not. all(abs(found%acceleration(:, link)) <= huge(1.0_wp))) last = 1
          if (last >= 1 .and. .not. all(abs(found%velocity(:, link)) <= huge(1.0_wp))) last = 0
          if (.not. all(abs(found%position(:, link)) <= huge(1.0_wp))) last = -1
          if (last >= known_of(found, link)) cycle
+
          if (.not. allocated(found%link_known)) then
             allocate (found%link_known(size(found%position, 2)), source=found%known)
             allocate (found%link_flag(size(found%position, 2)), source=found%flag)
@@ -505,11 +518,11 @@ contains
       end do
    end subroutine accept_motion
 
-   !> Keeps only the first derivatives of all links.
+   !> Marks a motion as known up to a derivative, equally for all links.
    pure subroutine cut(found, known, flag)
-      type(motion_t), intent(inout) :: found
+      type(motion_t), intent(inout) :: found               !< known and flag are set; flags of links are removed
       integer, intent(in) :: known                         !< the last derivative that is known; -1: no position
-      integer, intent(in) :: flag                          !< the reason: flag_singular, ...
+      integer, intent(in) :: flag                          !< why no more is known: flag_none, flag_singular, ...
 
       call forget_links(found)
       if (found%flag /= flag_none) then
@@ -520,8 +533,8 @@ contains
       found%flag = flag
    end subroutine cut
 
-   !> Gives the largest closure error of redundant equations so far, in characteristic lengths or rad; -1: there are
-   !> none.
+   !> Gives the largest closure error of redundant equations so far, in units of their loops or rad; -1 without
+   !> redundant equations.
    pure real(wp) function redundancy_error(analysis)
       type(analysis_t), intent(in) :: analysis
 
@@ -529,7 +542,8 @@ contains
       if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error
    end function redundancy_error
 
-   !> Makes the mechanism that the blocks solve for such a method: all its links, to the limit of rounding.
+   !> Makes the mechanism that the blocks solve for METHOD DENSE and METHOD MATRIX: METHOD NEWTON for all its links, to
+   !> the limit of rounding.
    pure function for_blocks(m) result(own)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t) :: own
@@ -539,9 +553,9 @@ contains
       own%tolerance = 0.0_wp
    end function for_blocks
 
-   !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
+   !> Moves structure, geometry, guess and workspace from one continuation to another.
    subroutine move_memory(old, new)
-      type(continuation_t), intent(inout) :: old, new
+      type(continuation_t), intent(inout) :: old, new      !< from which, and to which, they are moved
 
       call move_alloc(old%blocks, new%blocks)
       call move_alloc(old%geometry, new%geometry)

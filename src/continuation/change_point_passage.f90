@@ -1,5 +1,5 @@
-!> The way back from a dead point or change point, for which there are two branches, and the passage through a change
-!> point at which the drive stops or turns.
+!> The way back from a dead point or change point, on one of two branches, and the passage through a change point at
+!> which the drive stops or turns.
 module change_point_passage
    use kinds, only: wp
    use drive_path, only: drive_at, value_at, slow_drive, next_turn, time_beside, lead
@@ -16,22 +16,23 @@ module change_point_passage
    private
    public :: leave, follow, go_by_value, solve_regular_blocks
 
-   !> So far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
-   !> length: far enough for rates, near enough for the same branch.
+   !> The distance from a singular position, back from it, at which a motion by the value of a drive begins, in radians
+   !> and characteristic lengths: far enough for exact rates, near enough for the same branch.
    real(wp), parameter :: short_step = (100.0_wp*epsilon(1.0_wp))**0.125_wp
-   !> After an instant at a singular position the motion takes the other branch when a drive has gone so far, in the
-   !> units of the blocks: the branches are still close there, and no longer singular.
+   !> After an instant at a singular position the motion takes the other branch when a drive has gone so far, in rad or
+   !> units of its block: the branches are still close there, and no longer singular.
    real(wp), parameter :: drive_change_after_rest = 1.0e-5_wp
 
 contains
 
    !> Leaves the singular position of the last instant, for a motion that goes back from there. If there are BRANCH
-   !> cards, it is then followed on the branch that they select, from shortly after that instant.
+   !> cards, the motion is then followed on the branch that they select, from shortly after that instant. If it cannot
+   !> be followed to there, it stays where it was.
    subroutine leave(continuation, last, t, blocks, list)
       type(continuation_t), intent(inout) :: continuation
-      real(wp), intent(in) :: last               !< time of the last instant
-      real(wp), intent(in) :: t                  !< time to which the motion goes
-      integer, intent(in) :: blocks(:)           !< numbers of the blocks that stand there
+      real(wp), intent(in) :: last               !< time of the last instant, in the deck's unit
+      real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit
+      integer, intent(in) :: blocks(:)           !< numbers of the blocks that are singular there
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< (blocks); diagnostic_dead_end: no branch is found
       type(continuation_state_t) :: before
       type(step_record_t) :: step
@@ -52,6 +53,7 @@ contains
          call restore(continuation, before)
          return
       end if
+
       call accept_substep(continuation, beside)
       do k = 1, size(blocks)
          call decide(continuation%branch_requests, blocks(k), &
@@ -68,25 +70,27 @@ contains
       end do
    end subroutine leave
 
-   !> Follows the motion, by time or by the value of a drive.
+   !> Follows the motion to a time: by time or, if that fails, by the value of a drive.
    subroutine follow(continuation, t, step, list)
       type(continuation_t), intent(inout) :: continuation
-      real(wp), intent(in) :: t                  !< time to which it goes
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< allocated if it ends at a singular position
+      real(wp), intent(in) :: t                  !< the time, in the deck's unit
+      type(step_record_t), intent(inout) :: step !< a new record; then how the step ended
+      !> Its change points, allocated if the step by value ends at a singular position.
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
 
       call continue_to(continuation, t, step)
       if (step%ending < step_there) call go_by_value(continuation, t, step, list)
    end subroutine follow
 
    !> Follows the motion by the value of the one drive that moves, from turn to turn, if the step by time has failed or
-   !> has ended at a position without velocities. Reason: the drive stops or turns about there. By time the motion comes
-   !> ever closer to a singular position and never across.
+   !> has ended at a position without velocities. Reason: the drive stops or turns near there, and by time the motion
+   !> comes ever closer to the singular position and never across. If the step by value fails too, or several drives
+   !> move, all stays.
    subroutine go_by_value(continuation, t, step, list)
       type(continuation_t), intent(inout) :: continuation
-      real(wp), intent(in) :: t                  !< time to which the motion goes
-      type(step_record_t), intent(inout) :: step !< of the continuation to `t`; it arrives, or stands on a change point
-      type(diagnostic_t), allocatable, intent(out) :: list(:)   !< allocated if `t` is at a singular position
+      real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit
+      type(step_record_t), intent(inout) :: step !< of the step by time; then step_there, or step_stands
+      type(diagnostic_t), allocatable, intent(out) :: list(:)   !< change points at `t`; not allocated: none
       type(continuation_state_t) :: before, reached
       type(step_record_t) :: by_value
       integer :: drive
@@ -102,7 +106,7 @@ contains
       call go_from_turn_to_turn(continuation, drive, t, by_value)
       deallocate (continuation%path%leg)
       if (by_value%ending == step_there) call resume_motion(continuation, t, by_value)
-      ! As the step has ended: that tells where the limit is, and which.
+      ! The state in which the step by time has ended tells which limit there is, and where.
       if (by_value%ending < step_there) call restore(continuation, reached)
       continuation%place = before
       if (by_value%ending < step_there) return
@@ -111,19 +115,19 @@ contains
       if (by_value%ending == step_there) return
       list = change_diagnostics(continuation%blocks, continuation%geometry, continuation%state, t)
       call solve_regular_blocks(continuation, t)
-      ! By time a dead point at which the drive turns is one.
+      ! A dead point at which the drive turns is a change point by time, though not by value.
       if (size(list) == 0) list = change_diagnostics(continuation%blocks, continuation%geometry, continuation%state, t)
       if (size(list) > 0) step%ending = step_stands
       call follow_from(continuation, before)
    end subroutine go_by_value
 
-   !> Follows the motion to the value of a drive at `t`, the other drives held, from one place at which the drive turns
-   !> to the next. It begins a little way back, since rates are uncertain near a change point.
+   !> Follows the motion to the value of a drive at `t`, with fixed other drives, from one value at which the drive
+   !> turns to the next. It begins a little way back, since rates are uncertain near a change point.
    subroutine go_from_turn_to_turn(continuation, drive, t, step)
-      type(continuation_t), intent(inout) :: continuation
-      integer, intent(in) :: drive               !< its number
-      real(wp), intent(in) :: t                  !< time to which the motion goes
-      type(step_record_t), intent(out) :: step   !< step_stands: `t` is at a singular position
+      type(continuation_t), intent(inout) :: continuation   !< then on a leg of its path
+      integer, intent(in) :: drive               !< the number of the drive
+      real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit
+      type(step_record_t), intent(out) :: step   !< how it ended; step_stands: `t` is at a singular position
       type(step_record_t) :: one
       type(continuation_state_t) :: first
       real(wp) :: turn, next
@@ -149,10 +153,10 @@ contains
 
    contains
 
-      !> Follows the motion to a value of the drive, at a constant rate: the step `one`.
+      !> Follows the motion to a value of the drive, at a constant rate, and records the step in `one`.
       subroutine go_to(to, value)
-         real(wp), intent(in) :: to              !< time at which it has this value; it begins at the time `turn`
-         real(wp), intent(in) :: value           !< rad or unit of length
+         real(wp), intent(in) :: to              !< time at which the drive has this value; the leg begins at `turn`
+         real(wp), intent(in) :: value           !< of the drive, rad or deck's unit of length
          real(wp) :: now(3)
 
          now = drive_at(continuation%path, drive, continuation%t)
@@ -165,11 +169,12 @@ contains
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
-   !> Makes the motion that is followed go on at another parameter of the path. The drives have the same values there.
+   !> Puts the motion that is followed at another parameter of its path, where the drives have the values of the last
+   !> position, and solves for its rates by this parameter.
    subroutine resume_motion(continuation, parameter, step)
       type(continuation_t), intent(inout) :: continuation
-      real(wp), intent(in) :: parameter          !< of the path: time or a drive's value
-      type(step_record_t), intent(inout) :: step !< step_there: the motion goes on; step_failed: not
+      real(wp), intent(in) :: parameter          !< of the path, in the deck's unit of time
+      type(step_record_t), intent(inout) :: step !< step_there: the motion goes on; step_failed: it does not
 
       call begin_at(continuation%history, parameter)
       continuation%t = parameter
@@ -179,11 +184,11 @@ contains
       if (step%ending == step_there) call accept_substep(continuation, parameter)
    end subroutine resume_motion
 
-   !> Finds velocities and accelerations of the blocks that are regular at a singular position. The others keep their
-   !> positions.
+   !> Solves for position, velocities and accelerations of the blocks that are regular at a singular position. Singular
+   !> blocks keep their positions.
    subroutine solve_regular_blocks(continuation, t)
-      type(continuation_t), intent(inout) :: continuation   !< its state stands there
-      real(wp), intent(in) :: t                  !< time
+      type(continuation_t), intent(inout) :: continuation   !< with a state at the singular position
+      real(wp), intent(in) :: t                  !< parameter of the path there, in the deck's unit of time
 
       call set_drive_values(continuation%path, t, continuation%state)
       associate (moving => continuation%blocks%moving)

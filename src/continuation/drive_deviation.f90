@@ -1,10 +1,10 @@
-!> The values of all drives between two instants: how far they go from the first, and how far they leave the chord from
-!> the first to the second. A substep of the continuation relies on these bounds.
+!> Bounds of the values of all drives between two instants: how far they go from the first value, and how far they leave
+!> the chord from the first to the second value. A substep of the continuation relies on these bounds.
 !>
 !> A position at the end of a substep is the continuation of the one before if the drives follow their chords. If one
 !> drive moves, it may go to and fro between its two values, since the mechanism then comes back through the same
-!> positions; beyond them it may go at most as far as the position is certain to exist. Of several drives none may
-!> leave its own chord by more: round a cusp there is another assembly at the same values.
+!> positions; beyond the two values it may go at most as far as the position is certain to exist. Of several drives none
+!> may leave its own chord by more: round a cusp there is another assembly at the same values.
 module drive_deviation
    use kinds, only: wp
    use mechanism, only: mechanism_t, find_instants
@@ -16,29 +16,31 @@ module drive_deviation
    private
    public :: drive_deviation_t, new_drive_excursion, limit_substep, judge_step, examine
 
-   !> The largest excursion off the chord, in rad or characteristic lengths. A position mostly allows less, as its
-   !> Jacobian says; this bounds the effect on links far down a chain.
+   !> The largest excursion off the chord, in rad or characteristic lengths. The Jacobian of a position mostly allows
+   !> less; this limit bounds the effect on links far down a chain.
    real(wp), parameter :: max_deviation = 0.03_wp
-   !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
+   !> The least factor by which a substep is made shorter at once: the bounds of a shorter substep are closer.
    real(wp), parameter :: min_factor = 1.0e-3_wp
    !> The change of a shortened substep over the largest that is allowed: it shall not be a rounding too long.
    real(wp), parameter :: a_little_less = 0.98_wp
 
-   !> Bounds of the drives by time, in the deck's unit.
+   !> Bounds of the drives of a mechanism. Times are in the deck's unit.
    type :: drive_deviation_t
-      !> (drives) Of the value: 1 over the characteristic length, or 1; none if no position depends on those before.
+      !> (drives) Factor of the values: 1 over the characteristic length, or 1 for an angle. Of size 0 if no position
+      !> depends on positions before.
       real(wp), allocatable :: unit(:)
-      real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
+      real(wp) :: first = 0.0_wp, last = 0.0_wp   !< times of the earliest and the latest instant
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_predicted_change`
-      real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
+      real(wp) :: curve = huge(1.0_wp)            !< largest second derivative of a drive's value times `unit`
    end type drive_deviation_t
 
 contains
 
-   !> Bounds the drives of a mechanism between its instants.
+   !> Bounds the drives of a mechanism between its earliest and its latest instant. Without instants only the factors of
+   !> the values are set.
    function new_drive_excursion(m, depends) result(p)
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: depends         !< there are positions that depend on those before
+      logical, intent(in) :: depends         !< positions depend on positions before: some unknown is iterated
       type(drive_deviation_t) :: p
       type(bounds_t) :: b
       real(wp) :: largest(2)
@@ -66,14 +68,15 @@ contains
       p%curve = largest(2)
    end function new_drive_excursion
 
-   !> Finds the part of a substep that the drives allow at once.
+   !> Shortens a substep until no drive changes by more than `largest_predicted_change` nor leaves its chord by more
+   !> than `max_deviation`.
    pure subroutine limit_substep(deviation, path, t, substep, allowed, away)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t              !< the parameter of the path from which the substep goes
-      real(wp), intent(in) :: substep        !< the wanted one, in the unit of the parameter
-      real(wp), intent(out) :: allowed       !< the part of it that is allowed
-      real(wp), intent(out) :: away          !< excursion of the drives in it, as `examine`
+      real(wp), intent(in) :: substep        !< the wanted substep, in the unit of the parameter
+      real(wp), intent(out) :: allowed       !< the allowed substep; too short to change `t`: none is allowed
+      real(wp), intent(out) :: away          !< bound of the drives' excursion in it, rad or characteristic lengths
       real(wp) :: change
       logical :: inside, is_plain
 
@@ -96,12 +99,12 @@ contains
       if (inside .and. deviation%curve < huge(1.0_wp)) away = 0.125_wp*allowed**2*deviation%curve
    end subroutine limit_substep
 
-   !> Finds whether steps, anywhere between the instants, need not be divided because of the drives.
+   !> Finds whether the drives allow all steps of a given length between the instants.
    pure subroutine judge_step(deviation, step, away, is_plain)
       type(drive_deviation_t), intent(in) :: deviation
-      real(wp), intent(in) :: step           !< of time
-      real(wp), intent(out) :: away          !< excursion of the drives in a plain step, as `examine`
-      logical, intent(out) :: is_plain       !< such steps need not be divided
+      real(wp), intent(in) :: step           !< the length of the step, in the deck's unit of time
+      real(wp), intent(out) :: away          !< bound of the drives' excursion in it; 0 if there is no bound
+      logical, intent(out) :: is_plain       !< the drives allow such steps
 
       away = 0.0_wp
       is_plain = abs(step) <= deviation%longest .and. deviation%curve < huge(1.0_wp)
@@ -110,14 +113,15 @@ contains
       is_plain = away <= max_deviation
    end subroutine judge_step
 
-   !> Bounds the change of the drives between two parameters of their path, and their excursion off the chords. A chord
-   !> is off its curve by h^2/8 times the second derivative at most.
+   !> Bounds the change of the drives between two parameters of their path, and their excursion off the chords, by the
+   !> rules of the module's head. A chord of length h is off its curve by h^2/8 times the second derivative at most. If
+   !> a drive has no bound, both results are huge.
    pure subroutine examine(deviation, path, t1, t2, change, away)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2         !< the parameters
-      real(wp), intent(out) :: change        !< of every drive from its value at `t1`, in rad or characteristic lengths
-      real(wp), intent(out) :: away          !< their excursion, in rad or characteristic lengths
+      real(wp), intent(in) :: t1, t2         !< the parameters, in either order, in the deck's unit of time
+      real(wp), intent(out) :: change        !< largest change from the value at `t1`, in rad or characteristic lengths
+      real(wp), intent(out) :: away          !< largest excursion, in rad or characteristic lengths
       type(bounds_t) :: b
       real(wp) :: f1(3), f2(3), h, rate, bow, off, beyond, off_one, off_all
       integer :: i, moving
@@ -150,11 +154,11 @@ contains
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
 
-   !> Tells whether two parameters lie within the time of all instants, and are times.
+   !> Tells whether two parameters are times, and lie between the earliest and the latest instant.
    pure logical function is_within(deviation, path, t1, t2)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2         !< the parameters
+      real(wp), intent(in) :: t1, t2         !< the parameters, in either order, in the deck's unit of time
 
       is_within = min(t1, t2) >= deviation%first .and. max(t1, t2) <= deviation%last .and. .not. allocated(path%leg)
    end function is_within

@@ -1,4 +1,4 @@
-!> Cylinders along the motion: the limit at which a length comes to its bound, and the flag of a motion out of a stroke.
+!> Cylinders along a motion: the limit at which a length comes to its bound, and the flag of a motion out of a stroke.
 module strokes
    use kinds, only: wp
    use mechanism, only: drive_slide
@@ -16,11 +16,12 @@ module strokes
 
 contains
 
-   !> Puts the limit at which the length of a cylinder comes to its bound into the list, if the motion is that near.
+   !> Finds the limit at which the length of a cylinder comes to its bound, if the motion has come within
+   !> `near_limit_part` of the step to it. Of several cylinders the nearest limit counts.
    subroutine find_length_limit(continuation, t, list)
-      type(continuation_t), intent(in) :: continuation
-      real(wp), intent(in) :: t                            !< time to which it goes
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(continuation_t), intent(in) :: continuation     !< a motion that did not reach `t`
+      real(wp), intent(in) :: t                            !< time to which the step goes, in the deck's unit
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< then this limit only; without one it stays
       type(diagnostic_t) :: limit
       real(wp) :: lengths(0:2, size(continuation%geometry%cylinders)), f(3), way, left, nearest
       integer :: d, k, side
@@ -29,11 +30,11 @@ contains
       nearest = near_limit_part*abs(t - continuation%place%t)
       do k = 1, size(continuation%geometry%cylinders)
          associate (bounds => continuation%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
-            if (abs(rate) <= rounded*maxval(abs(lengths(1, :)))) cycle   ! another drive holds it
+            if (abs(rate) <= rounded*maxval(abs(lengths(1, :)))) cycle   ! its length is fixed: the rate is rounding
             do side = 1, 2
                if (bounds(side) >= huge(1.0_wp)) cycle
                way = bounds(side) - length
-               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! as it begins
+               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! drawn at or beyond it
                if (abs(way) > nearest*abs(rate)) cycle
                left = way/rate
                if (left*sign(1.0_wp, t - continuation%t) < 0.0_wp) cycle
@@ -59,10 +60,11 @@ contains
       list = [limit]
    end subroutine find_length_limit
 
-   !> Flags a complete motion if a cylinder is out of its stroke.
+   !> Flags a complete motion if a cylinder is out of its stroke, and adds a diagnostic for each such cylinder. An
+   !> incomplete or flagged motion stays.
    subroutine flag_strokes(cylinders, found)
-      type(cylinder_t), intent(in) :: cylinders(:)
-      type(motion_t), intent(inout) :: found
+      type(cylinder_t), intent(in) :: cylinders(:)         !< (any number)
+      type(motion_t), intent(inout) :: found               !< of all links
       integer :: k
 
       if (found%known < 2 .or. found%flag /= flag_none) return

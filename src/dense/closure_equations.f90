@@ -1,4 +1,4 @@
-!> The closure equations (14) of a mechanism: residual, Jacobian and acceleration remainder.
+!> The closure equations (14) of a mechanism: residuals, Jacobian and acceleration remainder.
 !>
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
 !> paper's own iteration: if the configuration is frozen, its slopes are the coefficients of (16) and the matrix is
@@ -15,7 +15,7 @@
 !> Prismatic pair: point P of link i and point Q of link j; the guide lies in link i. Its direction
 !> e = (cos theta, sin theta), theta = phi_i + alpha, and its normal n = (-sin theta, cos theta) turn with link i.
 !> With d = P - Q:
-!>    d . n = h                 (9), in which the print has sin phi_j for one sin phi_i; (6) and (16) are right
+!>    d . n = h                 (9), in which the print of 1987 has sin phi_j for one sin phi_i; (6), (16) are right
 !>    phi_j - phi_i = beta      (10)
 !> and the slide of (3), (4) is x_w = -d . e. Both are projections d . f on a vector f that turns with link i: f = n for
 !> the pair, f = -e for the SLIDE drive.
@@ -35,10 +35,10 @@ module closure_equations
 
 contains
 
-   !> Finds the residuals of all closure equations (14).
+   !> Finds the residuals of all closure equations (14), by (7) to (10) of the pairs.
    pure subroutine residual(system, configuration, driven, residuals)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
       real(wp), intent(out) :: residuals(:)  !< (n) in the system's unit of length or rad
       integer :: k
@@ -71,10 +71,11 @@ contains
       end do
    end subroutine residual
 
-   !> Finds the Jacobian of the residuals. If the configuration is in the frozen form, it is the matrix A of (20).
+   !> Finds the Jacobian of the residuals. If the configuration is in the frozen form, the result is the matrix A of
+   !> (20) instead.
    pure subroutine jacobian(system, configuration, a)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(out) :: a(:, :)       !< (n, n) in the system's unit of length and rad
       real(wp) :: coefficients(3)
       integer :: k, row
@@ -120,10 +121,11 @@ contains
       end do
    end subroutine jacobian
 
-   !> Finds the acceleration remainder: the part of the second derivative of the residuals in addition to J a.
+   !> Finds the acceleration remainder gamma of (22): the part of the second derivative of the residuals with respect to
+   !> time in addition to J a, with the Jacobian J and the accelerations a.
    pure subroutine remainder(system, configuration, rates, gamma)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(configuration_t), intent(in) :: configuration   !< of the system, not frozen
       real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
       real(wp), intent(out) :: gamma(:)      !< (n) in the system's unit of length or rad, per unit of time squared
       integer :: k
@@ -136,6 +138,7 @@ contains
             gamma(2*k - 1) = projection_remainder(system, configuration, rates, k, normal(system, configuration, k))
          end if
       end do
+
       do k = 1, size(system%drives)
          associate (row => gamma(2*size(system%pairs) + k), subject => system%drives(k)%subject, &
             kind => system%drives(k)%kind)
@@ -147,11 +150,12 @@ contains
       end do
    end subroutine remainder
 
-   !> Finds value, rate and acceleration of all drives, in the system's unit and from its origin.
+   !> Finds value, rate and acceleration of all drives, in the system's unit and from its origin, at a parameter of
+   !> their path.
    pure subroutine find_drive_values(system, path, parameter, values)
       type(system_t), intent(in) :: system
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: parameter      !< of the path
+      real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp), intent(out) :: values(:, :)  !< (3, drives) in the system's unit of length or rad, by the parameter
       integer :: i
 
@@ -164,7 +168,7 @@ contains
       end do
    end subroutine find_drive_values
 
-   !> Gives the coordinate of a drive X or Y: 1 for x, 2 for y.
+   !> Gives the number of the coordinate of a drive X or Y: 1 for x, 2 for y.
    pure integer function axis_of(kind)
       integer, intent(in) :: kind   !< drive_x or drive_y
 
@@ -196,7 +200,7 @@ contains
       end associate
    end subroutine place
 
-   !> Gives P - Q (2) of a pair, in the system's unit of length.
+   !> Gives the vector P - Q (2) of a pair, in the system's unit of length.
    pure function closure_error(system, configuration, k) result(d)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -209,7 +213,7 @@ contains
       end associate
    end function closure_error
 
-   !> Gives the normal n (2) of the guide of a prismatic pair, a unit vector.
+   !> Gives the normal n (2) of the guide of a prismatic pair, a unit vector in the fixed axes.
    pure function normal(system, configuration, k) result(n)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -219,7 +223,7 @@ contains
       n = quarter_turn(-along(system, configuration, k))
    end function normal
 
-   !> Gives minus the direction e (2) of the guide of a prismatic pair: the slide is the projection of P - Q on it.
+   !> Gives -e (2) for the direction e of the guide of a prismatic pair, in the fixed axes: the slide is (P - Q) . (-e).
    pure function along(system, configuration, k) result(f)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -229,10 +233,10 @@ contains
       f = -rotated(system%guide(:, k), configuration%direction(:, system%link_of(system%pairs(k)%point_i)))
    end function along
 
-   !> Gives the row (6) of the projection of a prismatic pair, by x_i, y_i, phi_i, x_j, y_j, phi_j. In the frozen form
-   !> (16), d . f is d_x f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with h counted from the
-   !> nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y columns only, as
-   !> printed, the slot of the yoke mechanism makes the matrix singular at every position.
+   !> Gives the derivatives (6) of the projection d . f of a prismatic pair by x_i, y_i, phi_i, x_j, y_j, phi_j, the row
+   !> (6). In the frozen form (16), d . f is d_x f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h,
+   !> with h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and
+   !> y columns only, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(system, configuration, k, direction, psi, zeros) result(row)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -255,8 +259,8 @@ contains
       end associate
    end function projection_row
 
-   !> Gives the acceleration remainder of the projection of a prismatic pair, in the system's unit of length per unit of
-   !> time squared.
+   !> Gives the acceleration remainder of the projection (d . f)'' of a prismatic pair, in the system's unit of length
+   !> per unit of time squared, by the formulas of the module's head.
    pure real(wp) function projection_remainder(system, configuration, rates, k, direction) result(gamma)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -276,8 +280,8 @@ contains
       end associate
    end function projection_remainder
 
-   !> Gives the part of the second derivative of P - Q (2) in addition to the accelerations: -phi_i'^2 u +
-   !> phi_j'^2 w, in the system's unit of length per unit of time squared.
+   !> Gives the part (2) of the second derivative of P - Q of a pair that has no accelerations, -phi_i'^2 u + phi_j'^2
+   !> w, in the system's unit of length per unit of time squared.
    pure function turning_part(system, configuration, rates, k) result(gamma)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration

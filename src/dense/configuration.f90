@@ -1,10 +1,10 @@
 !> A mechanism made ready for its closure equations, and a position of all its links.
 !>
 !> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
-!> characteristic length. This loses no digit, and makes the results the same in any unit.
+!> characteristic length. This loses no digit, and makes results equal in any unit.
 !>
 !> A configuration can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi.
-!> Here h, the angle that multiplies them, is counted from the nearest zero of the cosine or sine itself, for each row
+!> Here h, the angle that multiplies c and s, is counted from the nearest zero of the cosine or sine, in each row from
 !> its own: cos psi = c(h) h with c(h) = -+ sin(h)/h,  sin psi = s(h) h with s(h) = +- sin(h)/h. For this reason h = 0,
 !> at which the print divides by zero and the iteration has a false attractor, is an ordinary position: sin(h)/h is 1
 !> there.
@@ -21,26 +21,28 @@ module configuration
 
    !> The equations of one mechanism; lengths in units of `length`.
    type :: system_t
-      integer :: n = 0                            !< equations and unknowns
-      real(wp) :: length = 1.0_wp                 !< a power of two, in the deck's unit
-      real(wp) :: origin(2) = 0.0_wp              !< the point that x and y are counted from, in the deck's unit
+      integer :: n = 0                            !< how many equations and unknowns there are
+      real(wp) :: length = 1.0_wp                 !< the unit of length, a power of two, in the deck's unit
+      real(wp) :: origin(2) = 0.0_wp              !< the point from which x and y are counted, in the deck's unit
       integer, allocatable :: column(:)           !< (links) the unknown that is the link's x; 0: ground
-      integer, allocatable :: link_of(:)          !< (points)
+      integer, allocatable :: link_of(:)          !< (points) the number of its link
       real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
-      type(pair_t), allocatable :: pairs(:)
-      type(drive_t), allocatable :: drives(:)     !< each is one equation, the last ones
+      type(pair_t), allocatable :: pairs(:)       !< two equations each, in their order; h in the unit of length
+      type(drive_t), allocatable :: drives(:)     !< one equation each, after those of the pairs
       real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
    end type system_t
 
-   !> A position of all links and what follows from it; lengths in the system's unit, angles in radians.
+   !> A position of all links with its directions and body vectors; lengths in the system's unit, angles in radians.
    type :: configuration_t
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
       real(wp), allocatable :: body_vector(:, :)  !< (2, points) from the link's origin to the point
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the body vector by phi, or frozen
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
-      real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
-      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the rows of slots; rows of SLIDE: a quarter turn on
+      !> (2, points) frozen: reference angles of the cosine and the sine of the body vector's angle
+      real(wp), allocatable :: zeros(:, :)
+      !> (2, pairs) frozen: of the guide's normal; for a SLIDE drive exchanged, and a quarter turn added
+      real(wp), allocatable :: guide_zeros(:, :)
    end type configuration_t
 
 contains
@@ -59,6 +61,7 @@ contains
          s%column(i) = s%n + 1
          s%n = s%n + 3
       end do
+
       s%link_of = m%points%link
       allocate (s%offset(2, size(m%points)), s%guide(2, size(m%pairs)))
       do i = 1, size(m%points)
@@ -71,9 +74,10 @@ contains
       s%drives = m%drives
    end function new_system
 
-   !> Gives the positions of the deck: the given ones of ground links, the estimates of the others.
+   !> Makes the configuration of the deck: given positions of ground links, estimates of the other links. It is not
+   !> frozen.
    pure function new_configuration(system, m) result(p)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< of `m`
       type(mechanism_t), intent(in) :: m
       type(configuration_t) :: p
       integer :: i
@@ -87,10 +91,11 @@ contains
       call set_configuration(system, p)
    end function new_configuration
 
-   !> Finds directions, body vectors and slopes from the coordinates: one sine and one cosine a link.
+   !> Finds directions, body vectors and slopes of a configuration from the coordinates of its links, slopes in the
+   !> frozen form if the configuration has that. It takes one sine and one cosine a link.
    pure subroutine set_configuration(system, configuration)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(inout) :: configuration
+      type(configuration_t), intent(inout) :: configuration   !< of the system, with q, frozen and zeros
       integer :: i
 
       configuration%direction(1, :) = cos(configuration%q(3, :))
@@ -110,7 +115,7 @@ contains
    !> values.
    pure subroutine choose_references(system, configuration)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(inout) :: configuration
+      type(configuration_t), intent(inout) :: configuration   !< of the system, with directions and body vectors
       integer :: i
 
       configuration%frozen = .true.
@@ -123,7 +128,7 @@ contains
       call set_configuration(system, configuration)
    end subroutine choose_references
 
-   !> Adds a change of the unknowns to coordinates of all links; ground links stay as they are.
+   !> Adds a change of the unknowns to coordinates of all links, or rates to rates; ground links stay.
    pure subroutine add_to_links(system, change, places)
       type(system_t), intent(in) :: system
       real(wp), intent(in) :: change(:)      !< (n) in the system's unit of length and rad, or per unit of time
@@ -135,7 +140,7 @@ contains
       end do
    end subroutine add_to_links
 
-   !> Gives the angle of the normal of a prismatic pair, in rad.
+   !> Gives the angle of the normal of a prismatic pair's guide at a configuration, in rad.
    pure real(wp) function normal_angle(system, configuration, k)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -144,7 +149,8 @@ contains
       normal_angle = configuration%q(3, system%link_of(system%pairs(k)%point_i)) + system%pairs(k)%alpha + pi/2.0_wp
    end function normal_angle
 
-   !> Gives the angle of the body vector to a point, in rad.
+   !> Gives the angle of the body vector to a point at a configuration, in rad; of a point at its link's origin the
+   !> link's angle.
    pure real(wp) function body_vector_angle(system, configuration, i)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -153,7 +159,7 @@ contains
       body_vector_angle = configuration%q(3, system%link_of(i)) + atan2(system%offset(2, i), system%offset(1, i))
    end function body_vector_angle
 
-   !> Gives the angles (2) nearest to an angle at which cos, then sin, is zero, in rad.
+   !> Gives the two angles (2) nearest to an angle at which cos is zero, and at which sin is zero, in rad.
    pure function nearest_zeros(psi) result(zeros)
       real(wp), intent(in) :: psi   !< rad
       real(wp) :: zeros(2)
@@ -162,7 +168,8 @@ contains
       zeros(2) = anint(psi/pi)*pi
    end function nearest_zeros
 
-   !> Gives the frozen coefficients (2) of (15): cos(psi)/(psi - zeros(1)) and sin(psi)/(psi - zeros(2)).
+   !> Gives the frozen coefficients (2) of (15): cos(psi)/(psi - zeros(1)) and sin(psi)/(psi - zeros(2)), and at a zero
+   !> the limit.
    pure function secants(psi, zeros) result(c)
       real(wp), intent(in) :: psi            !< rad
       real(wp), intent(in) :: zeros(2)       !< rad: the reference angles of cosine and sine

@@ -1,10 +1,10 @@
 !> METHOD DENSE and METHOD MATRIX: one instant by all closure equations at once, with x, y, phi of every link as
 !> unknowns. This is the form of the paper, by Newton's method or by the iteration of 1987. Positions, velocities and
-!> accelerations are solutions of the full systems (16), (21) and (22). The blocks give the start of the iteration, and
-!> tell whether its end is their position; no number of theirs is in its rows.
+!> accelerations are solutions of the full systems (16), (21) and (22). The blocks give the initial guess, and check
+!> whether the iteration ends at their position; no number of the blocks is printed.
 !>
-!> An iteration that fails, or ends elsewhere, begins again eight times nearer: the prediction of half a step is so much
-!> nearer. If the Jacobian has no inverse, links that only drives move have the rates of the drives.
+!> An iteration that fails, or ends at another position, begins again eight times nearer, as the prediction of half a
+!> step would. If the Jacobian has no inverse, links that only drives move have the rates of the drives.
 module dense_method
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_matrix, own_predictor
@@ -24,26 +24,27 @@ module dense_method
    private
    public :: dense_t, make_dense, solve_all_links
 
-   !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
+   !> A change over the distance of the next root: below this part no other root is as near (Newton and Kantorovich).
    real(wp), parameter :: certain_part = 0.5_wp
-   !> A position without an inverse Jacobian is known to the root of eps; a root this near, in rad or characteristic
+   !> The position of a singular Jacobian is known to the root of eps; a root this near, in rad or characteristic
    !> lengths, is that position.
    real(wp), parameter :: same_singular_position = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
-   !> Starts that are tried, each so many times nearer than the one before.
+   !> Initial guesses that are tried, each nearer to the blocks' position than the one before by the factor below.
    integer, parameter :: max_starts = 4
+   !> The error of a prediction goes with the cube of the step: that of half a step is 8 times smaller.
    real(wp), parameter :: nearer_each_start = 8.0_wp
-   !> The predictor of the paper: the state before, with its velocities and accelerations.
+   !> The predictor of the paper: the position before, with its velocities and accelerations.
    integer, parameter :: order_of_paper = 2
 
-   !> Lengths in the system's unit.
+   !> The closure equations of a mechanism and their solver, lengths in the system's unit.
    type :: dense_t
-      type(system_t) :: system
+      type(system_t) :: system                    !< the equations
       integer :: method = 0                       !< method_dense or method_matrix
       integer :: order = order_of_paper           !< of the predictor, 0 to 2
       real(wp) :: tolerance = 0.0_wp              !< relative; 0: the limit of rounding
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
-      type(configuration_t) :: configuration      !< the position that is searched for
-      type(factors_t) :: factors
+      type(configuration_t) :: configuration      !< the last iterate
+      type(factors_t) :: factors                  !< of the last matrix
    end type dense_t
 
 contains
@@ -62,19 +63,19 @@ contains
       allocate (dense%drive_values(3, size(m%drives)))
    end subroutine make_dense
 
-   !> Solves for the motion of all links at a time at which the blocks have found one. If no try finds the position of
-   !> the blocks, `found` has only their motion.
+   !> Solves for the motion of all links at a time at which the blocks have found a motion. If no initial guess leads to
+   !> the position of the blocks, `found` has only the blocks' motion of the links that requests need.
    subroutine solve_all_links(dense, b, x, path, estimated, history, s, found, convergence)
       type(dense_t), intent(inout) :: dense
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) of the deck, rad or unit of the loop
-      type(history_t), intent(in) :: history      !< the motions before
+      real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) the initial guess of the deck, rad or unit of the loop
+      type(history_t), intent(in) :: history      !< the motions before; empty: the guess of the deck is the first
       type(state_t), intent(in) :: s              !< the motion that the blocks have found
-      type(motion_t), intent(inout) :: found      !< at the time found%t, in the deck's units
-      !> How the last try ended; the first one if all failed. Iterations are those of all tries. If it is singular, only
-      !> links that only drives move have velocities.
+      type(motion_t), intent(inout) :: found      !< (links) at the time found%t, in the deck's units
+      !> Of the iteration that found the position, or of the first one if all failed; iterations are those of all. If it
+      !> is singular, the velocities are those of the blocks.
       type(solve_report_t), intent(out) :: convergence
       type(solve_report_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
@@ -84,15 +85,14 @@ contains
       logical :: finite
       integer :: k, iterations
 
-
       iterations = 0
       call find_drive_values(dense%system, path, found%t, dense%drive_values)
       call move_links(x%chain, x%chain%wanted, s, found, finite)
       there = found%position
       there(:2, :) = there(:2, :)/dense%system%length
 
-      ! It begins at the position that the blocks follow, predicted with its velocities and accelerations; at first at
-      ! the deck's estimate.
+      ! The first guess is the latest position of the blocks, predicted with its velocities and accelerations; before
+      ! the first motion the deck's estimate.
       latest = s
       call recall(b, x, path, history, estimated, latest)
       before = new_motion(size(there, 2))
@@ -111,6 +111,7 @@ contains
                least, largest, convergence%determinant)
             convergence%min_pivot = least/max(largest, least)
          end if
+
          iterations = iterations + convergence%iterations
          if (is_solved(convergence)) then
             if (.not. is_found_by_blocks(dense, b, x, s, there)) convergence%ended = ended_elsewhere
@@ -134,6 +135,7 @@ contains
             call solve_factored(dense%factors, v)
             found%velocity = 0.0_wp
             call add_to_links(all, v, found%velocity)
+
             call remainder(all, dense%configuration, found%velocity, v)
             v = -v
             v(first_drive:) = v(first_drive:) + dense%drive_values(3, :)
@@ -147,14 +149,14 @@ contains
       found%position(:2, :) = dense%system%length*found%position(:2, :)
    end subroutine solve_all_links
 
-   !> Tells whether the position of the dense method is the one that the blocks have found: no other root is as near to
-   !> it (Newton and Kantorovich).
+   !> Tells whether the position of the dense method is the position that the blocks have found: no other root is as
+   !> near to the blocks' position (Newton and Kantorovich).
    pure logical function is_found_by_blocks(dense, b, x, s, there) result(is)
-      type(dense_t), intent(in) :: dense
+      type(dense_t), intent(in) :: dense          !< with the position in its configuration
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s              !< that the blocks have found
-      real(wp), intent(in) :: there(:, :)         !< (3, links) its x, y, phi, in the system's unit of length and rad
+      type(state_t), intent(in) :: s              !< the motion that the blocks have found
+      real(wp), intent(in) :: there(:, :)         !< (3, links) x, y, phi of the blocks' position, system's unit and rad
       real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 

@@ -1,4 +1,4 @@
-!> The position of all links, by the iteration that both methods are:
+!> The position of all links by an iteration, of which METHOD DENSE and METHOD MATRIX are two cases:
 !>
 !>    M(q_k) dq = -r(q_k),   q_(k+1) = q_k + dq
 !>
@@ -6,13 +6,13 @@
 !> phi_ref = phi + cot(phi) in cosine rows and phi - tan(phi) in sine rows, where A is the Jacobian itself.
 !>
 !> METHOD MATRIX: M is the paper's A, A x_z = p - B x_n (20) with the coefficients c(phi), s(phi) of the last iterate;
-!> the step is the same, since A x - p + B x_n at the old position is the residual there. It converges linearly, like
+!> the step is equal, since A x - p + B x_n at the old position is the residual there. It converges linearly, like
 !> G = I - A^-1 J, or not at all. The reference angles, one for each row of each link, are the zeros nearest to the
 !> predicted position, and stay during the iteration.
 !>
-!> It ends when the residual AND the step are within tolerance of the size of the coordinates (vanishing increments
-!> prove nothing in METHOD MATRIX), or when the residual is at the rounding level and the steps shrink no more: all the
-!> digits that the condition leaves.
+!> The iteration ends when the residual AND the step are within the tolerance of the size of the coordinates (vanishing
+!> steps prove nothing in METHOD MATRIX). It also ends when the residual is at the rounding level and the steps shrink
+!> no more: then the position has all digits that the condition leaves.
 module position_iteration
    use kinds, only: wp
    use linear_solver, only: factors_t, factor, solve
@@ -26,33 +26,34 @@ module position_iteration
    private
    public :: solve_position
 
-   !> An iteration that goes further than this, in rad, wanders, and its end is up to rounding: it has diverged.
+   !> rad: an iteration that turns a link further wanders, and its end depends on rounding: it has diverged.
    real(wp), parameter :: max_angle_change = largest_predicted_change
-   !> Near a singular position Newton's method only halves the step: 53 bits take 53 iterations.
+   !> Iterations of Newton's method at most. Near a singular position it only halves the step: 53 bits take 53.
    integer, parameter :: newton_iterations = 60
-   !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
+   !> Iterations of 1987 at most. At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
    integer, parameter :: matrix_iterations = nint(7.55*digits(1.0_wp))
-   !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
+   !> A step this small, over the size of the coordinates, leaves Jacobian and velocities at the rounding level too.
    real(wp), parameter :: dense_step_tolerance = 16.0_wp*epsilon(1.0_wp)
-   !> Even if the Jacobian has no inverse, a residual at the rounding level leaves no more to correct than this.
+   !> Over the size of the coordinates: with a residual at the rounding level even a singular Jacobian leaves no larger
+   !> step.
    real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
-   !> An iteration does not return from a step of this size; it is well below overflow.
+   !> An iteration does not come back from a step of this size, in rad or the system's unit; well below overflow.
    real(wp), parameter :: max_correction = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
 
 contains
 
    !> Moves all links to a position at which the drives have given values: by Newton's method or by the iteration of
    !> 1987, (20). If the position is found, the factors are those of the Jacobian, for (21) and (22). They belong to the
-   !> position or, by Newton's method, to one a step of the tolerance's size before. Otherwise they are the factors of
-   !> the last matrix.
+   !> position or, by Newton's method, to the iterate one step of the tolerance's size before. Otherwise they are the
+   !> factors of the last matrix.
    subroutine solve_position(system, driven, tolerance, is_matrix, configuration, factors, convergence)
       type(system_t), intent(in) :: system
       real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
-      real(wp), intent(in) :: tolerance      !< relative; 0: the limit of rounding
-      logical, intent(in) :: is_matrix       !< by the iteration of 1987
+      real(wp), intent(in) :: tolerance      !< over the size of the coordinates; 0: the limit of rounding
+      logical, intent(in) :: is_matrix       !< by the iteration of 1987; otherwise by Newton's method
       type(configuration_t), intent(inout) :: configuration   !< the initial guess, then the last iterate
       type(factors_t), intent(inout) :: factors   !< with room for n equations
-      type(solve_report_t), intent(out) :: convergence   !< how the iteration ended
+      type(solve_report_t), intent(out) :: convergence   !< how the iteration ended; singular: without an inverse
       real(wp) :: r(system%n), start(size(configuration%q, 2)), before, highest
       logical :: stays
       integer :: info

@@ -1,21 +1,21 @@
-!> How far the next root of the closure equations is from a position found: the steps along a curve of assemblies rely
-!> on it (card CIRCUITS).
+!> How far the next root of the closure equations is from a position: the steps along a curve of assemblies rely on it
+!> (card CIRCUITS).
 !>
-!> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
-!> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles only are
-!> linear: R is 0 there, and links that a prismatic pair ties together turn by one angle. The bounds are
+!> The theorem of Newton and Kantorovich, row by row. Two positions z and z + d with equal values of the drives have
+!> J d = -R, with J the Jacobian at z and R_k the part of row k beyond its linear part, at most L_k |d|^2/2. Rows of
+!> angles only are linear: their R is 0, and links that prismatic pairs join turn by one angle. The bounds are
 !>    revolute pair        L = |u| + |w|      body vectors of links that turn
 !>    X, Y drive           L = |u|
 !>    (9), SLIDE drive     L = 2 W + |x_i - x_j|, if the guide turns, otherwise 0
-!> and |d| needs to hold only what these depend on: angles, and (x_i - x_j)/W of prismatic pairs whose guide turns. For
-!> each such coordinate g . d is at most |d|^2/2 times the sum over k of |g . J^-1 e_k| L_k; the largest of these sums,
-!> K, leaves no other root within 2/K. Rejected: |J^-1| times the largest L, which is larger by 10 to 1000, since places
-!> and given angles count in it too.
+!> and |d| needs to hold only the coordinates on which these rows depend: angles, and (x_i - x_j)/W of prismatic pairs
+!> whose guide turns. For each such coordinate g, g . d is at most |d|^2/2 times the sum over k of |g . J^-1 e_k| L_k.
+!> The largest of these sums, K, leaves no other root within 2/K. Rejected: |J^-1| times the largest L, which is larger
+!> by 10 to 1000, since positions and given angles count in it too.
 !>
-!> Along one direction t J^-1 J changes by D a unit of length: D is the largest of the sums over the coordinates e_m of
-!> |g . J^-1 J'[t] e_m|. Forces at the joints of one link cancel in it: D is K |t| at most, and often a tenth of it.
+!> Along one direction t, J^-1 J changes by D a unit of length: D is the largest of the sums over the coordinates e_m of
+!> |g . J^-1 J'[t] e_m|. Forces at the joints of one link cancel in D: it is K |t| at most, and often a tenth of that.
 !>
-!> W is the larger of |x_i - x_j| and 1: then K does not grow as a slide goes to infinity.
+!> W is the larger of |x_i - x_j| and 1, in the system's unit of length: K does not grow as a slide goes to infinity.
 module uniqueness_radius
    use kinds, only: wp
    use mechanism, only: has_guide, drive_x, drive_y, drive_slide
@@ -31,16 +31,16 @@ module uniqueness_radius
 
    !> The coordinates in which the rows of a system are not linear.
    type :: coordinates_t
-      integer :: angles = 0
-      integer, allocatable :: angle_of(:)      !< (links) the number of its angle; 0: it does not turn
-      integer, allocatable :: slides(:)        !< the prismatic pairs whose guide turns
+      integer :: angles = 0                    !< how many angles there are
+      integer, allocatable :: angle_of(:)      !< (links) the number of its angle; 0: the link does not turn
+      integer, allocatable :: slides(:)        !< numbers of the prismatic pairs whose guide turns
       !> (n, angles + 2 slides) Linear forms in the unknowns: of each angle one; of each slide two, its x and y.
       real(wp), allocatable :: forms(:, :)
    end type coordinates_t
 
 contains
 
-   !> Finds the coordinates of a system; its slides are not measured yet.
+   !> Finds the coordinates of a system. The forms of slides are 0 until `measure_slides`.
    function new_coordinates(system) result(c)
       type(system_t), intent(in) :: system
       type(coordinates_t) :: c
@@ -67,11 +67,11 @@ contains
       end do
    end function new_coordinates
 
-   !> Measures the slides of the coordinates in their unit W at a configuration.
+   !> Sets the forms of the slides of coordinates, in their units W at a configuration.
    pure subroutine measure_slides(system, configuration, coordinates)
       type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
-      type(coordinates_t), intent(inout) :: coordinates
+      type(configuration_t), intent(in) :: configuration   !< of the system
+      type(coordinates_t), intent(inout) :: coordinates   !< of the system
       integer :: k, axis
 
       do k = 1, size(coordinates%slides)
@@ -89,7 +89,8 @@ contains
       end do
    end subroutine measure_slides
 
-   !> Gives |x_i - x_j| of a pair at a configuration, in the system's unit of length.
+   !> Gives the distance |x_i - x_j| of the origins of a pair's links at a configuration, in the system's unit of
+   !> length.
    pure real(wp) function slide_length(system, configuration, k)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -99,28 +100,30 @@ contains
          - configuration%q(:2, system%link_of(system%pairs(k)%point_j)))
    end function slide_length
 
-   !> Gives the largest coordinate of the difference of two positions, in rad or in W.
+   !> Gives the largest coordinate of the difference of two positions, in rad or in units W.
    pure real(wp) function distance(coordinates, change)
-      type(coordinates_t), intent(in) :: coordinates
+      type(coordinates_t), intent(in) :: coordinates   !< with measured slides
       real(wp), intent(in) :: change(:)   !< (n) in the system's unit of length and rad
 
       distance = largest(coordinates, abs(matmul(change, coordinates%forms)))
    end function distance
 
-   !> Gives the largest coordinate from the values of the forms; the two forms of a slide are one vector.
+   !> Gives the largest coordinate from the values of the forms; the two forms of a slide are one vector. 0 without
+   !> forms.
    pure real(wp) function largest(coordinates, values)
       type(coordinates_t), intent(in) :: coordinates
-      real(wp), intent(in) :: values(:)      !< (forms) 0 or more, in rad or in W
+      real(wp), intent(in) :: values(:)      !< (forms) 0 or more, in rad or in units W
 
       largest = maxval([0.0_wp, values(:coordinates%angles), hypot(values(coordinates%angles + 1::2), &
          values(coordinates%angles + 2::2))])
    end function largest
 
-   !> Multiplies the forms by the inverse of a factored matrix (n, forms + 1); the last column is scratch. The `tangent`
-   !> stands in the last row of the matrix, and the other rows are 0 on it. If `tangent` is 0, the matrix is as it is.
+   !> Multiplies the forms by the inverse of a factored matrix: columns g . J^-1 (n, forms + 1), of which the last is
+   !> scratch. If `tangent` is not 0, it is the last row of the matrix, and the other rows are 0 on it: then the forms
+   !> count only across the tangent.
    function forms_by_inverse(coordinates, factors, tangent) result(y)
-      type(coordinates_t), intent(in) :: coordinates
-      type(factors_t), intent(in) :: factors
+      type(coordinates_t), intent(in) :: coordinates   !< with measured slides
+      type(factors_t), intent(in) :: factors   !< of the matrix
       real(wp), intent(in) :: tangent(:)       !< (n) unit vector, or 0
       real(wp) :: y(size(coordinates%forms, 1), size(coordinates%forms, 2) + 1)
       integer :: k, info
@@ -135,12 +138,13 @@ contains
       end associate
    end function forms_by_inverse
 
-   !> Bounds the part of the rows beyond their linear part at a configuration: L_k of the head of this file (rows). The
-   !> two rows of a revolute pair have one bound, for their vector.
+   !> Bounds the part of the rows (rows of pairs, then of drives) beyond their linear part at a configuration: L_k of
+   !> the module's head, in the system's unit of length. The two rows of a revolute pair have one bound, for their
+   !> vector.
    pure function jacobian_lipschitz(system, coordinates, configuration) result(bound)
       type(system_t), intent(in) :: system
-      type(coordinates_t), intent(in) :: coordinates
-      type(configuration_t), intent(in) :: configuration
+      type(coordinates_t), intent(in) :: coordinates   !< of the system
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp) :: bound(2*size(system%pairs) + size(system%drives))
       real(wp) :: body(size(system%link_of))
       integer :: k, row
@@ -158,6 +162,7 @@ contains
             end if
          end associate
       end do
+
       do k = 1, size(system%drives)
          row = 2*size(system%pairs) + k
          associate (subject => system%drives(k)%subject)
@@ -167,13 +172,13 @@ contains
       end do
    end function jacobian_lipschitz
 
-   !> Gives K at a configuration: no other root is within 2/K, by `distance`. The factored matrix has the rows of the
-   !> system first; its others are linear.
+   !> Gives K of the module's head at a configuration: no other root is within 2/K, in the coordinates of `distance`.
+   !> The factored matrix has the rows of the system first; any other rows are linear.
    pure real(wp) function kantorovich(system, coordinates, columns, configuration) result(k)
       type(system_t), intent(in) :: system
-      type(coordinates_t), intent(in) :: coordinates
-      type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more) as `forms_by_inverse` gives them
+      type(coordinates_t), intent(in) :: coordinates   !< with slides measured at the configuration
+      type(configuration_t), intent(in) :: configuration   !< of the system
+      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more) g . J^-1, by `forms_by_inverse`
       real(wp) :: bound(2*size(system%pairs) + size(system%drives))
       integer :: m
 
@@ -192,12 +197,12 @@ contains
       end function row_sum
    end function kantorovich
 
-   !> Gives D at a configuration in a direction.
+   !> Gives the change D of J^-1 J at a configuration along a direction, by the module's head.
    pure real(wp) function change_along(system, coordinates, columns, configuration, along) result(change)
       type(system_t), intent(in) :: system
-      type(coordinates_t), intent(in) :: coordinates
-      real(wp), intent(in) :: columns(:, :)  !< (n, forms or more) as `forms_by_inverse` gives them
-      type(configuration_t), intent(in) :: configuration
+      type(coordinates_t), intent(in) :: coordinates   !< with slides measured at the configuration
+      real(wp), intent(in) :: columns(:, :)  !< (n, forms or more) g . J^-1, by `forms_by_inverse`
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: along(:, :)    !< (3, links) the direction, in the system's unit of length and rad
       real(wp) :: total(size(coordinates%forms, 2)), part(size(coordinates%forms, 2), 2), unit(3, size(along, 2))
       logical :: is_of_pair(size(columns, 1))
@@ -209,6 +214,7 @@ contains
          where (coordinates%angle_of == k) unit(3, :) = 1.0_wp
          total = total + abs(matmul(mixed_derivative(), columns(:, :size(total))))
       end do
+
       do k = 1, size(coordinates%slides)
          associate (pair => coordinates%slides(k))
             is_of_pair = .false.
@@ -219,7 +225,7 @@ contains
                unit = 0.0_wp
                unit(axis, system%link_of(system%pairs(pair)%point_i)) = max(1.0_wp, &
                   slide_length(system, configuration, pair))
-               ! The link may have other slides.
+               ! Only the rows of this pair: x and y of the link may be in the rows of other slides.
                part(:, axis) = matmul(merge(mixed_derivative(), 0.0_wp, is_of_pair), columns(:, :size(total)))
             end do
          end associate
@@ -229,7 +235,7 @@ contains
 
    contains
 
-      !> Gives the second derivatives of the rows by `along` and by `unit` (n).
+      !> Gives the mixed second derivatives (n) of the rows along `along` and `unit`, from two remainders.
       pure function mixed_derivative() result(rows)
          real(wp) :: rows(size(columns, 1)), less(size(columns, 1))
 
