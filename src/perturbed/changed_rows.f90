@@ -1,5 +1,5 @@
-!> Rows of a mechanism whose numbers are changed, solved from the position at hand by Newton's method, block by block:
-!> never by a run of its own, which could take the other branch near a change point.
+!> Rows of a mechanism whose numbers are changed, solved from a position of the unchanged mechanism by Newton's method,
+!> block by block: never by a run of its own, which could take the other branch near a change point.
 module changed_rows
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -22,43 +22,44 @@ module changed_rows
 
    !> A mechanism with changed numbers: another geometry of one structure.
    type :: perturbed_t
-      type(mechanism_t) :: m                     !< its links are where the cards put them
-      type(geometry_t) :: geometry
-      type(drive_path_t) :: path
-      logical :: is_ready = .false.              !< made for this mechanism
+      type(mechanism_t) :: m                     !< with the changed numbers
+      type(geometry_t) :: geometry               !< by these numbers
+      type(drive_path_t) :: path                 !< of its drives
+      logical :: is_ready = .false.              !< it was made for the mechanism that is estimated
       logical :: fits = .true.                   !< the structure serves for its numbers
-      integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
-      real(wp) :: roundings = 0.0_wp             !< by so many; below 0: in the opposite direction
-      real(wp) :: time_off = 0.0_wp              !< the instant is off by this part of it
-      real(wp) :: length = 0.0_wp                !< as `length` of `perturb_numbers`
+      integer :: direction = -1                  !< numbers are off by `roundings` in this direction; -1: other numbers
+      real(wp) :: roundings = 0.0_wp             !< how many; below 0: in the opposite direction
+      real(wp) :: time_off = 0.0_wp              !< the instant is off by this part of its time
+      real(wp) :: length = 0.0_wp                !< size that counts for all lengths, deck's unit; 0: each its own
    end type perturbed_t
 
-   !> The position at hand, state and workspace to solve from it for one changed mechanism after another, and the
-   !> findings of the last solution.
+   !> A position from which rows of changed mechanisms are solved, state and workspace for it, and the findings of the
+   !> last solution.
    type :: base_position_t
-      type(unknown_t), allocatable :: start(:)   !< (0:unknowns) slides in the deck's unit
-      logical :: only_driven = .false.           !< nothing is known of it but links that only drives move
+      type(unknown_t), allocatable :: start(:)   !< (0:unknowns) of the unchanged mechanism, slides in the deck's unit
+      logical :: only_driven = .false.           !< only links that only drives move are known
       logical :: is_singular = .false.           !< it has no unique rates
-      logical :: stays = .false.                 !< a search begins there, without a nudge
-      type(turned_t), allocatable :: turned(:)   !< (measures) angles of measures go on from there
-      type(state_t) :: state
-      type(workspace_t) :: work
-      type(motion_t) :: q                        !< found last
-      !> The largest Kantorovich ratio of a block: the change of its position over the distance of the next one.
+      logical :: stays = .false.                 !< a search begins at the position itself, without a nudge
+      type(turned_t), allocatable :: turned(:)   !< (measures) angles from which measures continue
+      type(state_t) :: state                     !< of the last solution
+      type(workspace_t) :: work                  !< scratch of the solver
+      type(motion_t) :: q                        !< of the last solution, in the deck's units
+      !> The largest Kantorovich ratio of a block: the change of its position over the distance of the next position.
       real(wp) :: ratio = 0.0_wp
-      real(wp) :: change = 0.0_wp                !< largest of an unknown, rad or unit of the block
-      logical :: jams = .false.                  !< equations contradict
+      real(wp) :: change = 0.0_wp                !< the largest change of an unknown, rad or unit of the block
+      logical :: jams = .false.                  !< equations contradict one another
       !> Redundant equations: the largest closure error (unit of the loop, or rad) over its `level`, and its bound.
       real(wp) :: opened = 0.0_wp, room = huge(1.0_wp)
    end type base_position_t
 
-   !> Up to so many links, a mechanism keeps the changed ones from instant to instant, each with its numbers. A larger
-   !> one has one spare set of numbers, and needs less memory.
+   !> Up to so many links, the changed mechanisms of all directions are kept from instant to instant. For a larger
+   !> mechanism one changed mechanism is kept, which takes less memory.
    integer, parameter :: most_links = 1000
-   !> A search begins this far (rad, unit of the block) from the position at hand: there it would end at once, and show
-   !> nothing of the residual that is left. On a dead point it begins as far away as roundings may have moved it.
+   !> A search begins this far (rad, unit of the block) from the position: at the position itself it would end at once,
+   !> and show nothing of the residual that is left. On a dead point it begins as far away as roundings may have moved
+   !> the position.
    real(wp), parameter :: nudge = sqrt(epsilon(1.0_wp))/1024.0_wp, singular_nudge = 16.0_wp*sqrt(epsilon(1.0_wp))
-   !> Nothing is known of a change with a larger Kantorovich ratio: it is not of first order.
+   !> A change with a larger Kantorovich ratio is not of first order: its rows count as unknown.
    real(wp), parameter :: first_order_ratio = 0.5_wp
    !> At a dead point a position moves by the root of a change of numbers (rad, unit of the block). A search that goes
    !> farther has found no position, and ends anywhere.
@@ -66,13 +67,13 @@ module changed_rows
 
 contains
 
-   !> Takes a motion as the place from which rows are solved from now on.
+   !> Makes a motion the position from which rows are solved from now on.
    subroutine find_place(b, x, s, q, place)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< of the motion
-      type(motion_t), intent(in) :: q        !< of the unchanged mechanism
-      type(base_position_t), intent(inout) :: place
+      type(motion_t), intent(in) :: q        !< the motion, of the unchanged mechanism
+      type(base_position_t), intent(inout) :: place   !< the position, the motion before included
       integer :: k
 
       place%only_driven = q%known < 0
@@ -90,23 +91,24 @@ contains
       end do
    end subroutine find_place
 
-   !> Makes room for the solution of a structure.
+   !> Makes state and workspace of a base position for a structure.
    subroutine make_room(b, drives, place)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives          !< number of drives that move it
-      type(base_position_t), intent(inout) :: place
+      type(blocks_t), intent(in) :: b        !< the structure
+      integer, intent(in) :: drives          !< how many drives there are
+      type(base_position_t), intent(inout) :: place   !< state and work are set
 
       place%state = new_state(b, drives)
       place%work = new_workspace(b)
    end subroutine make_room
 
-   !> Finds the changed mechanism of a direction, and makes it ready if it is not yet. Its numbers are still others.
+   !> Finds the changed mechanism of a direction. If it is not ready, it becomes a copy of the unchanged mechanism;
+   !> otherwise it keeps its numbers, which may belong to another direction.
    subroutine make_ready(list, k, m, x, i)
       type(perturbed_t), allocatable, intent(inout) :: list(:)   !< (0:directions) or (0:0); made if not allocated
       integer, intent(in) :: k               !< the direction; 0: numbers as they stand
       type(mechanism_t), intent(in) :: m     !< the unchanged mechanism
-      type(geometry_t), intent(in) :: x      !< its geometry
-      integer, intent(out) :: i              !< the number in `list`
+      type(geometry_t), intent(in) :: x      !< the geometry of the unchanged mechanism
+      integer, intent(out) :: i              !< the index of the changed mechanism in `list`
 
       if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
       i = merge(k, 0, k <= ubound(list, 1))
@@ -119,26 +121,26 @@ contains
       end associate
    end subroutine make_ready
 
-   !> Gives the geometry of a changed mechanism the numbers of its cards.
+   !> Gives geometry and path of a changed mechanism the numbers of its cards. If these are off by roundings only, terms
+   !> that cancel in the equations are left out: redundant equations stay redundant, and parallel guides stay parallel.
    subroutine assign_changes(b, perturbed, by_roundings)
       type(blocks_t), intent(in) :: b
-      type(perturbed_t), intent(inout) :: perturbed   !< its `m` has the numbers
-      !> With roundings only, terms that cancel in the equations are left out: redundant equations stay redundant, and
-      !> parallel guides stay parallel.
-      logical, intent(in) :: by_roundings    !< the numbers are off by roundings only
+      type(perturbed_t), intent(inout) :: perturbed   !< its `m` has the numbers; `fits` is set
+      logical, intent(in) :: by_roundings    !< the numbers are off by roundings only: they fit
 
       perturbed%m%tolerance = 0.0_wp
       call assign_geometry(perturbed%m, b, perturbed%geometry, perturbed%path, perturbed%fits)
       perturbed%fits = perturbed%fits .or. by_roundings
    end subroutine assign_changes
 
-   !> Finds the rows of a changed mechanism, solved from a place. A row shows how much of it was found.
+   !> Finds the rows of a changed mechanism near a position. If its numbers do not fit the structure, it is solved by a
+   !> structure of its own; if that has other redundant equations, it jams.
    subroutine rows_with(b, perturbed, t, place, rows)
-      type(blocks_t), intent(in) :: b
-      type(perturbed_t), intent(in) :: perturbed
-      real(wp), intent(in) :: t              !< time
-      type(base_position_t), intent(inout) :: place
-      type(row_t), intent(inout) :: rows(:)  !< (requests)
+      type(blocks_t), intent(in) :: b        !< the structure of the unchanged mechanism
+      type(perturbed_t), intent(in) :: perturbed   !< with geometry and path
+      real(wp), intent(in) :: t              !< time, in the deck's unit
+      type(base_position_t), intent(inout) :: place   !< the position; then also the findings of the solution
+      type(row_t), intent(inout) :: rows(:)  !< (requests) `known` of a row tells how much of it was found
       type(structure_t) :: other
       type(drive_path_t) :: path
       integer :: i
@@ -165,12 +167,14 @@ contains
       end do
    end subroutine rows_with
 
-   !> Solves the needed blocks in turn, to the limit of rounding. Links may differ in how much of their motion is found.
+   !> Solves the needed blocks of a changed mechanism in turn, from a base position, and finds the motion of its links.
+   !> Blocks without a position, or whose change is not of first order, leave the links that they move flagged. If the
+   !> structure is not solvable, nothing is solved.
    subroutine solve_needed(b, x, path, place)
       type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
-      type(base_position_t), intent(inout) :: place   !< place%q: the motion, at its time
+      type(geometry_t), intent(in) :: x      !< of the changed mechanism
+      type(drive_path_t), intent(in) :: path   !< of the changed mechanism
+      type(base_position_t), intent(inout) :: place   !< with the time place%q%t; then the motion and the findings
       type(solve_report_t) :: c
       integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite
@@ -200,6 +204,7 @@ contains
                if (place%only_driven .and. .not. block%explicit) lack = missing_all
                if (lack < missing_all) then
                   call solve_block(b, x, i, .true., w, s, c)
+
                   place%ratio = max(place%ratio, c%kantorovich_ratio)
                   ! A position out of reach contradicts nothing: a smaller change may find one.
                   if (is_solved(c) .or. c%ended == ended_inconsistent) &
@@ -221,7 +226,7 @@ contains
             end associate
          end do
 
-         ! The change of a drive's own unknown counts too: full turns are no return.
+         ! The changes of explicit unknowns count too: a drive that makes full turns does not return.
          do k = 1, ubound(s%u, 1)
             place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))
          end do
@@ -233,15 +238,16 @@ contains
       end associate
    end subroutine solve_needed
 
-   !> Computes rates and accelerations of a block again, by iterative refinement. A singular Jacobian leaves them. The
-   !> orthogonal factors of redundant equations leave errors as large as the largest of all rows; one pass reduces the
-   !> error of each row to its own size (Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 20).
+   !> Improves rates and accelerations of a block with redundant equations by iterative refinement. Reason: the
+   !> orthogonal factors leave errors as large as the largest of all rows; one pass reduces the error of each row to
+   !> its own size (Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 20). With a singular Jacobian
+   !> they stay.
    subroutine refine_rates(b, x, i, w, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< number of the block
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s      !< with the motion of the block
       real(wp), allocatable :: jacobian(:, :)
       integer :: order, info
 
@@ -261,7 +267,7 @@ contains
       end associate
    end subroutine refine_rates
 
-   !> Gives the unit of a slide in the deck's; 1 of an angle.
+   !> Gives the unit of an unknown: of a slide in the deck's unit of length; 1 of an angle.
    pure real(wp) function slide_unit(b, x, k) result(unit)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

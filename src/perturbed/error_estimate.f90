@@ -1,5 +1,5 @@
 !> The error estimate: how far the numbers of a motion are known. It solves the rows of mechanisms whose numbers are
-!> off by roundings, at instants at which digits of the tables could be in doubt or errors are asked for.
+!> off by roundings, at instants at which digits of the tables could be lost or errors are requested (--errors).
 module error_estimate
    use assertions, only: asserts, assert
    use kinds, only: wp
@@ -19,15 +19,15 @@ module error_estimate
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
 
-   !> Numbers are off by many roundings: compared with them the roundings of the calculation are small.
+   !> Numbers are off by so many roundings: compared with them the roundings of the calculation are small.
    real(wp), parameter :: many_roundings = 256.0_wp
-   !> They are off by few if changes by many have a larger Kantorovich ratio, as 1E-12 from a dead point: below it
-   !> changes are of first order, but for about this part.
+   !> Numbers are off by so few roundings if changes by many have a larger Kantorovich ratio than `linear_ratio`, as
+   !> 1E-12 from a dead point: with a smaller ratio changes are of first order, but for about this part.
    real(wp), parameter :: few_roundings = 16.0_wp, linear_ratio = 0.05_wp
    !> A sum is off by so many roundings of its largest number. With 0.9 the estimates of `make errors` are above all
    !> true errors, and 7 to 10 times as large in the mean.
    real(wp), parameter :: roundings_of_sum = 0.9_wp
-   !> Lengths and directions are off by the closure error over this.
+   !> For the closure error, lengths and directions are off by the closure error over this.
    real(wp), parameter :: closure_parts = 8.0_wp
    !> The roundings of a drawing may be larger than its closure error: all of 140 drawings are within this factor.
    real(wp), parameter :: closure_caution = 2.0_wp
@@ -35,57 +35,56 @@ module error_estimate
    !> a drawing would be shown.
    real(wp), parameter :: closure_errors_a_digit = 1.0_wp
 
-   !> How far the motion at one instant is known. It is `taken` if anything moves, and digits of the tables could be
-   !> `may_lose_digits`, which are masked then, or errors are `asked` for.
+   !> How far the motion at one instant is known.
    type :: error_estimate_t
       logical :: taken = .false.             !< an estimate was made
-      logical :: asked = .false.             !< --errors: wanted at every instant
+      logical :: asked = .false.             !< --errors: an estimate is requested at every instant
       real(wp) :: amplification = 0.0_wp            !< factor of roundings at this instant; huge if numbers are large
-      type(sizes_t) :: sizes                 !< if `taken`: numbers are compared with these
-      logical :: may_lose_digits = .false.          !< the growth is so large that digits may be lost
+      type(sizes_t) :: sizes                 !< if `taken`: characteristic sizes, with which numbers are compared
+      logical :: may_lose_digits = .false.          !< digits of the tables may be lost: these are masked
       !> (3, 0:2, requests) The largest change by a rounding of all numbers, or `nothing_known`.
       real(wp), allocatable :: changes(:, :, :)
-      !> (3, 0:2, requests) --errors: the error by numbers and by the roundings of the calculation itself: rates of
-      !> links that turn as one have no other error.
+      !> (3, 0:2, requests) --errors: the error by numbers, and by the roundings of the calculation itself. Reason:
+      !> rates of links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
       !> (3, 0:2, requests) The largest change by lengths and directions off by the closure error; 0 without one.
       real(wp), allocatable :: by_closure(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
    end type error_estimate_t
 
-   !> The means of all estimates of a mechanism.
+   !> The data that all estimates of a mechanism share.
    type :: estimator_t
-      type(sizes_t) :: sizes
-      real(wp) :: closure = 0.0_wp           !< closure error at most in its run (characteristic lengths, rad), or 0
-      type(base_position_t) :: place
-      !> (0:directions + own_directions) or (0:0), after the first estimate. Number 0 has numbers as they stand; they
-      !> are off by many or few roundings in each direction, and by one in each own direction.
+      type(sizes_t) :: sizes                 !< characteristic sizes of the mechanism
+      real(wp) :: closure = 0.0_wp           !< largest closure error in its run (characteristic lengths, rad), or 0
+      type(base_position_t) :: place         !< the position of the last estimate
+      !> (0:directions + own_directions) or (0:0), after the first estimate. Number 0 has numbers as they stand. In each
+      !> direction numbers are off by many or few roundings, in each own direction by one.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
 contains
 
-   !> Prepares the estimates of a mechanism, a variant of the mechanism before if there was one. The first estimate
-   !> makes the rest.
+   !> Prepares the estimates of a mechanism. The first estimate makes the changed mechanisms.
    subroutine make_estimator(estimator, m)
-      type(estimator_t), intent(inout) :: estimator
+      type(estimator_t), intent(inout) :: estimator   !< new, or of a variant of equal structure
       type(mechanism_t), intent(in) :: m
 
       estimator%sizes = sizes_of(m)
       if (allocated(estimator%perturbed)) estimator%perturbed%is_ready = .false.
    end subroutine make_estimator
 
-   !> Estimates how far a motion is known. The estimate is not `taken` if no digit is in doubt, or nothing moves.
+   !> Estimates how far a motion is known. No estimate is made (found%taken) if no digit may be lost, or if nothing of
+   !> the motion is known.
    subroutine estimate_errors(estimator, m, b, x, state, q, always, prints_errors, found)
-      type(estimator_t), intent(inout) :: estimator
+      type(estimator_t), intent(inout) :: estimator   !< of `m`
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: state
-      type(motion_t), intent(in) :: q
-      logical, intent(in) :: always          !< also if no digit of a table is in doubt
+      type(state_t), intent(in) :: state     !< of the motion
+      type(motion_t), intent(in) :: q        !< the motion
+      logical, intent(in) :: always          !< an estimate is made also if no digit of a table may be lost
       logical, intent(in) :: prints_errors            !< the errors themselves are printed (--errors)
-      type(error_estimate_t), intent(inout) :: found
+      type(error_estimate_t), intent(inout) :: found   !< the estimate
       logical :: is_small
 
       if (asserts) call assert(size(q%position, 2) == size(m%links), 'estimate_errors: a motion of all links')
@@ -110,19 +109,21 @@ contains
          estimator%place%is_singular, found%changes, is_small)
       if (.not. is_small) call find_largest_changes(few_roundings, 0.0_wp, 1.0_wp/ratio_of_rows(few_roundings), &
          .true., found%changes, is_small)
+
       found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
       if (prints_errors .and. .not. estimator%place%is_singular) then
          call find_own_changes()
-         ! As far as they exceed the largest change by numbers, the calculation has made them.
+         ! The part of own changes above the largest change by numbers comes from roundings of the calculation.
          associate (own => found%own, by_numbers => found%changes)
             own = max(own_safety_factor*own, &
                calculation_safety_factor*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
          end associate
       end if
+
       call add_sums(m, b, q, found)
       found%by_closure = 0.0_wp
       if (estimator%closure > 0.0_wp) then
-         ! A much smaller part of it would show how the weights of equations change, which goes with the error.
+         ! Changes by a much smaller part of the closure error would show how the weights of equations change.
          call find_largest_changes(estimator%closure/(closure_parts*epsilon(1.0_wp)), estimator%sizes%length, &
             closure_caution*ratio_of_rows(closure_parts), .true., found%by_closure, is_small)
          found%by_closure = min(found%by_closure, nothing_known)
@@ -130,13 +131,13 @@ contains
 
    contains
 
-      !> Replaces each row that has lost numbers by `find_changed` with the row of the opposite change. Both changes are
-      !> equally likely and large, and on a dead point only one of the two has a position.
+      !> Replaces each row that has lost numbers by a change with the row of the opposite change. Reason: both changes
+      !> are equally likely and large, and on a dead point only one of the two has a position.
       subroutine use_opposite(k, roundings, length, rows)
          integer, intent(in) :: k            !< the direction
-         real(wp), intent(in) :: roundings   !< as in `find_changed`
-         real(wp), intent(in) :: length      !< as in `find_changed`
-         type(row_t), intent(inout) :: rows(:)   !< (requests)
+         real(wp), intent(in) :: roundings   !< how many roundings numbers are off
+         real(wp), intent(in) :: length      !< size that counts for all lengths, deck's unit; 0: each its own
+         type(row_t), intent(inout) :: rows(:)   !< (requests) of the change in the direction
          type(row_t) :: other(size(rows))
 
          if (all(rows%known >= found%solved%known)) return
@@ -144,23 +145,23 @@ contains
          where (rows%known < found%solved%known) rows = other
       end subroutine use_opposite
 
-      !> Gives the ratio of two changes of the rows for a ratio of two changes of the numbers: its root, if the Jacobian
-      !> has no inverse.
+      !> Gives the ratio of two changes of rows that belongs to a ratio of two changes of numbers: equal, or the root of
+      !> that ratio if the Jacobian has no inverse.
       pure real(wp) function ratio_of_rows(ratio)
          real(wp), intent(in) :: ratio       !< 1 or more
 
          ratio_of_rows = merge(sqrt(ratio), ratio, estimator%place%is_singular)
       end function ratio_of_rows
 
-      !> Finds the largest changes of the rows from changes by several roundings. At the first change that is not of
-      !> first order it ends, unless all are wanted.
+      !> Finds the largest changes of the rows in all directions, scaled to a part. The search ends at the first change
+      !> that is not of first order, unless `anyway`.
       subroutine find_largest_changes(roundings, length, part, anyway, changes, is_small)
-         real(wp), intent(in) :: roundings   !< numbers are off by so many
-         real(wp), intent(in) :: length      !< as in `find_changed`
-         real(wp), intent(in) :: part        !< of the changes of the rows: the changes that are wanted
-         logical, intent(in) :: anyway       !< all are wanted, of first order or not
-         real(wp), intent(out) :: changes(3, 0:2, size(found%solved))   !< the largest ones, in the units of the rows
-         logical, intent(out) :: is_small    !< all changes are of first order, or all were wanted
+         real(wp), intent(in) :: roundings   !< how many roundings numbers are off
+         real(wp), intent(in) :: length      !< size that counts for all lengths, deck's unit; 0: each its own
+         real(wp), intent(in) :: part        !< factor of the changes of the rows
+         logical, intent(in) :: anyway       !< changes need not be of first order
+         real(wp), intent(out) :: changes(3, 0:2, size(found%solved))   !< the largest changes, in the units of the rows
+         logical, intent(out) :: is_small    !< all changes were found: of first order, or `anyway`
          type(row_t) :: rows(size(found%solved))
          integer :: k, i
 
@@ -176,7 +177,7 @@ contains
          end do
       end subroutine find_largest_changes
 
-      !> Finds the root of the mean square of the changes of the rows by one rounding, in further directions.
+      !> Finds in found%own the root of the mean square of the changes of the rows by one rounding, in own directions.
       subroutine find_own_changes()
          type(row_t) :: rows(size(found%solved))
          integer :: k, i
@@ -193,11 +194,11 @@ contains
       end subroutine find_own_changes
    end subroutine estimate_errors
 
-   !> Adds the changes by a rounding of sums to both kinds of changes: the motion and its rows are sums.
+   !> Adds the changes by a rounding of sums to an estimate: the motion and its rows are sums.
    subroutine add_sums(m, b, q, found)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
-      type(motion_t), intent(in) :: q
+      type(motion_t), intent(in) :: q        !< the motion
       type(error_estimate_t), intent(inout) :: found   !< the changes are those by numbers; then also those by sums
       real(wp) :: of_sums(3, 0:2, size(m%requests))
       type(motion_t) :: other
@@ -210,7 +211,7 @@ contains
       of_sums = 0.0_wp
       do k = 1, directions
          other = q
-         ! The roundings of the rows could hide the changes by one rounding.
+         ! Changes by one rounding could be hidden by the roundings of the rows: sums are off by few.
          call perturb_sums(b%tree, found%sizes%length, k, few_roundings, other)
          if (allocated(q%by)) call perturb_ratios(b, q, found%sizes%length, k, other)
          do i = 1, size(rows)
@@ -222,7 +223,7 @@ contains
       end do
 
       found%own = min(hypot(found%own, of_sums), nothing_known)
-      ! For the tables a rate that is zero, and that no change of the numbers changes, is no sum.
+      ! In tables a rate that is zero, and that no change of the numbers changes, does not count as a sum.
       do i = 1, size(rows)
          of_sums(:, 1:, i) = merge(of_sums(:, 1:, i), 0.0_wp, abs(rows(i)%value(:, 1:)) > 0.0_wp &
             .or. found%changes(:, 1:, i) > 0.0_wp)
@@ -230,11 +231,11 @@ contains
       found%changes = min(hypot(found%changes, of_sums), nothing_known)
    end subroutine add_sums
 
-   !> Changes the unit motions of a motion, of which ratios are made, by roundings of the sums that they are.
+   !> Changes the unit motions of a motion, of which ratios are made, by roundings of sums.
    subroutine perturb_ratios(b, q, length, k, other)
       type(blocks_t), intent(in) :: b
-      type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: length         !< characteristic length
+      type(motion_t), intent(in) :: q        !< the unchanged motion, with unit motions
+      real(wp), intent(in) :: length         !< characteristic length, in the deck's unit
       integer, intent(in) :: k               !< the direction
       type(motion_t), intent(inout) :: other   !< its unit motions are changed
       type(motion_t) :: unit
@@ -254,17 +255,17 @@ contains
       end do
    end subroutine perturb_ratios
 
-   !> Finds the rows near the motion with all numbers off by roundings in a direction.
+   !> Finds the rows near a motion with all numbers off by roundings in a direction.
    subroutine find_changed(estimator, m, b, x, t, k, roundings, length, rows)
-      type(estimator_t), intent(inout) :: estimator   !< at the place of the motion
-      type(mechanism_t), intent(in) :: m
+      type(estimator_t), intent(inout) :: estimator   !< with the position of the motion; then also the findings
+      type(mechanism_t), intent(in) :: m     !< the unchanged mechanism
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      real(wp), intent(in) :: t              !< time of the motion
+      real(wp), intent(in) :: t              !< time of the motion, in the deck's unit
       integer, intent(in) :: k               !< the direction; 0: no number is off
-      real(wp), intent(in) :: roundings      !< so many; below 0: in the opposite direction
-      real(wp), intent(in) :: length         !< each length is off as if it were so large; 0: by its own size
-      type(row_t), intent(inout) :: rows(:)   !< (requests)
+      real(wp), intent(in) :: roundings      !< how many roundings; below 0: in the opposite direction
+      real(wp), intent(in) :: length         !< size that counts for all lengths, deck's unit; 0: each its own
+      type(row_t), intent(inout) :: rows(:)   !< (requests) `known` of a row tells how much of it was found
       integer :: i
 
       call make_ready(estimator%perturbed, k, m, x, i)
@@ -282,11 +283,12 @@ contains
       end associate
    end subroutine find_changed
 
-   !> Gives the change (3, 0:2) of a row by a rounding; `nothing_known` for numbers that the changed row has lost.
+   !> Gives a part of the change (3, 0:2) of a row, in its units; `nothing_known` for numbers that the changed row has
+   !> lost.
    pure function change(one, middle, part) result(x)
       type(row_t), intent(in) :: one         !< the changed row
       type(row_t), intent(in) :: middle      !< the unchanged row
-      real(wp), intent(in) :: part           !< of their difference: the change by one rounding
+      real(wp), intent(in) :: part           !< factor of their difference
       real(wp) :: x(3, 0:2)
 
       x = part*difference(one, middle)
@@ -297,12 +299,13 @@ contains
       end if
    end function change
 
-   !> Estimates the error (3, 0:2) of a row by rounding of the deck's numbers, in the units of the row, or gives
-   !> `nothing_known`.
+   !> Estimates the error (3, 0:2) of a row by rounding of the deck's numbers and by the closure error, in the units of
+   !> the row; `nothing_known` for lost numbers. Without an estimate the error is 0, or `nothing_known` if it was
+   !> requested.
    pure function estimate_of(row, m, estimate, i) result(error)
-      type(row_t), intent(in) :: row
+      type(row_t), intent(in) :: row         !< of the motion
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: estimate
+      type(error_estimate_t), intent(in) :: estimate   !< of the motion
       integer, intent(in) :: i               !< number of the request
       real(wp), dimension(3, 0:2) :: error
 
@@ -325,12 +328,13 @@ contains
       end associate
    end function estimate_of
 
-   !> Gives the estimated error (3, 0:2) of a row: the error by rounding, and the distance from the row of the motion
-   !> that is solved to the limit of rounding.
+   !> Gives the estimated error (3, 0:2) of a row of a motion, in the units of the row: the error by rounding and by the
+   !> closure error, and the distance from the row that is solved to the limit of rounding. `nothing_known` for lost
+   !> numbers.
    pure function row_error(m, estimate, q, i) result(error)
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: estimate
-      type(motion_t), intent(in) :: q
+      type(error_estimate_t), intent(in) :: estimate   !< of the motion, with errors (--errors)
+      type(motion_t), intent(in) :: q        !< the motion
       integer, intent(in) :: i               !< number of the request
       real(wp), dimension(3, 0:2) :: error
       type(row_t) :: row
@@ -344,23 +348,25 @@ contains
       if (kinds_of_rows(row%kind)%is_centre) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
    end function row_error
 
-   !> Finds how much of a row a sample has, as `known` of `row_t`. If points of the sample coincide and points of the
-   !> row do not, the sample has only the numbers that exist there.
+   !> Gives the highest derivative of a row that a changed row has; -1: none. If points of the changed row coincide and
+   !> points of the row do not, the changed row has only the numbers that exist for coincident points.
    pure integer function last_common(one, row)
-      type(row_t), intent(in) :: one         !< the sample
-      type(row_t), intent(in) :: row
+      type(row_t), intent(in) :: one         !< the changed row
+      type(row_t), intent(in) :: row         !< the row
 
       last_common = one%known
       if (row%state /= points_coincide) last_common = known_at(one)
    end function last_common
 
-   !> Finds the numbers (3, 0:2) of a pole or curve that a sample does not have:
+   !> Finds the numbers (3, 0:2) of the row of a pole or curve that a changed row does not have:
+   !>
    !> - all, if less of its motion is known;
-   !> - places, if only one of the two has its centre at infinity or rests, or they are on two sides of infinity;
-   !> - directions, if one rests.
+   !> - positions, if only one of the two rows has its centre at infinity or rests, or if they are on two sides of
+   !>   infinity;
+   !> - directions, if one of the two rests.
    pure function lost_numbers(one, row) result(lost)
-      type(row_t), intent(in) :: one         !< the sample
-      type(row_t), intent(in) :: row         !< of the pole or curve
+      type(row_t), intent(in) :: one         !< the changed row
+      type(row_t), intent(in) :: row         !< the row
       logical :: lost(3, 0:2)
       integer :: first
       logical :: same_side
@@ -368,7 +374,7 @@ contains
       lost = one%known < row%known
       same_side = row%state /= centre_finite .or. (one%weight > 0.0_wp .eqv. row%weight > 0.0_wp)
       if (one%state == row%state .and. same_side) return
-      ! A place that exists even if the centre is at infinity is not the place of the centre.
+      ! A position that exists even if the centre is at infinity is not the position of the centre.
       first = merge(1, 0, columns_of_rows(forms(row%form)%first)%there(centre_infinite))
       lost(:2, first:) = .true.
       if (max(one%state, row%state) >= centre_starting) lost(3, :) = .true.

@@ -1,5 +1,5 @@
 !> The roundings of the numbers of a deck, as directions in which all of them are off at once: each by a normal deviate
-!> times eps times its size. The deviates are a hash of the number's address: they are the same in millimetres and in
+!> times eps times its size. The deviates are a hash of the number's address: they are equal in millimetres and in
 !> kilometres, at any instant, and in any process.
 !>
 !> The largest change of a row in these directions is multiplied by a factor. To first order the error of a row is a sum
@@ -12,10 +12,10 @@
 !> Of eight normal deviates the largest is below a ninth one over r in one of a million cases if r = 7.84; for sixteen
 !> directions r would be 4.07. The factor is 7.84*0.30 = 2.35.
 !>
-!> An error that is printed has more directions, since nothing else brings it nearer to the true one. By Student's t a
-!> deviate exceeds 6.93 times the root of the mean square of 20 others in one case of a million. Their numbers are
-!> off by one rounding, so a change holds the calculation's own roundings twice: its variance is (1 + 2*0.09) s**2, and
-!> the factor 6.93*0.30/1.09 = 1.91. The error by the calculation only has the factor 6.93/sqrt(2) = 4.90.
+!> An error that is printed has more directions, since nothing else brings it nearer to the true error. By Student's t a
+!> deviate exceeds 6.93 times the root of the mean square of 20 others in one case of a million. Here numbers are off by
+!> one rounding, and a change holds the calculation's own roundings twice: its variance is (1 + 2*0.09) s**2, and the
+!> factor 6.93*0.30/1.09 = 1.91. The error by the calculation only has the factor 6.93/sqrt(2) = 4.90.
 module rounded_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -30,8 +30,10 @@ module rounded_numbers
    public :: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
       perturb_numbers, perturb_sums
 
-   !> The derivation of these numbers is above.
+   !> How many directions there are for tables, and for errors that are printed. The module's head derives all factors.
    integer, parameter :: directions = 8, own_directions = 20
+   !> Factors: of the largest change in `directions`; of the root of the mean square in `own_directions`; of the part of
+   !> this root that comes from the calculation only.
    real(wp), parameter :: safety_factor = 2.35_wp, own_safety_factor = 1.91_wp, calculation_safety_factor = 4.90_wp
 
    !> The hash: numbers modulo a prime, multiplied as in Park and Miller's generator.
@@ -41,18 +43,18 @@ module rounded_numbers
 
 contains
 
-   !> Gives a mechanism the numbers of another one, each off by roundings in a direction. These numbers stay as they
-   !> stand: the time of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial
-   !> guess of moving links; with a `length` above 0 also drives and the time.
+   !> Gives a mechanism the numbers of another mechanism, each off by roundings in a direction. These numbers stay as
+   !> they stand: the time of a table, the exponent of a power, the angles of ground links, BETA of guides, and the
+   !> initial guess of moving links; with a `length` above 0 also drives and the time.
    subroutine perturb_numbers(m, tree, axes, k, roundings, length, off, time_off)
-      type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(in) :: axes
+      type(mechanism_t), intent(in) :: m     !< with the numbers as they stand
+      type(spanning_tree_t), intent(in) :: tree   !< of `m`
+      type(axes_t), intent(in) :: axes       !< of `m`
       integer, intent(in) :: k               !< the direction; 0: no number is off
-      real(wp), intent(in) :: roundings      !< so many; below 0: in the opposite direction
-      real(wp), intent(in) :: length         !< each length is off as if it were so large; 0: by its own size
-      type(mechanism_t), intent(inout) :: off   !< has the links, points, pairs and drives of `m`
-      real(wp), intent(out) :: time_off      !< the instant is off by this part of it
+      real(wp), intent(in) :: roundings      !< how many roundings; below 0: in the opposite direction
+      real(wp), intent(in) :: length         !< size that counts for all lengths, deck's unit; 0: each its own
+      type(mechanism_t), intent(inout) :: off   !< with the links, points, pairs and drives of `m`; gets the numbers
+      real(wp), intent(out) :: time_off      !< the instant is off by this part of its time
       real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
@@ -71,8 +73,8 @@ contains
       origin = plane_origin(m)
       do i = 1, size(m%points)
          associate (link => m%links(m%points(i)%link))
-            ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from the
-            ! origin of the plane.
+            ! Along and across, by the length of the vector to the point: the angle that turns it is rounded. A point of
+            ! the ground is counted from the origin of the plane.
             size_of = norm2(m%points(i)%offset)
             if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
             if (length > 0.0_wp) size_of = length
@@ -85,9 +87,9 @@ contains
       do i = 1, size(m%pairs)
          if (.not. has_guide(m%pairs(i)%kind)) cycle
          call put(parameter_t(parameter_pair, i, 0, 2), merge(length, abs(m%pairs(i)%offset), length > 0.0_wp))
-         ! Guides that are parallel or at right angles by the cards of links that turn as one stay so: their directions
-         ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
-         ! links and between guides are as they stand: the arms that they turn are off.
+         ! Guides of links that turn as one, parallel or at right angles by the cards, stay parallel or at right angles:
+         ! their directions are off by one part of a radian, whatever angles they are sums of. The angles of ground
+         ! links and between guides are as they stand: the vectors that they turn are off.
          associate (link => m%points(m%pairs(i)%point_i)%link)
             quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*parts_of_quarter/pi), int64), &
                int(parts_of_quarter, int64)))
@@ -114,11 +116,10 @@ contains
 
    contains
 
-      !> Gives a number of `off` its value in `m`, off by roundings of its size; not if the size is 0.
+      !> Gives a number of `off` its value in `m`, off by roundings of its size. A number of size 0 stays.
       subroutine put(number, size_of)
-         type(parameter_t), intent(in) :: number
+         type(parameter_t), intent(in) :: number   !< the address of the number
          real(wp), intent(in) :: size_of     !< in the unit of the number, at least 0
-
          real(wp) :: by
 
          if (.not. size_of > 0.0_wp) return
@@ -127,9 +128,10 @@ contains
          call set_parameter(off, number, parameter_value(m, number) + by)
       end subroutine put
 
-      !> Puts the numbers of a term off by roundings. A row of a table is off by the rounding of its time as well.
+      !> Gives the numbers of a term of `off` their values in `m`, off by roundings. A value of a table is off by the
+      !> rounding of its time as well.
       subroutine perturb_term(term, drive, j)
-         type(term_t), intent(in) :: term
+         type(term_t), intent(in) :: term    !< of `m`
          integer, intent(in) :: drive        !< number of its drive
          integer, intent(in) :: j            !< its number among the terms of the drive
          real(wp) :: slope
@@ -153,16 +155,16 @@ contains
       end subroutine perturb_term
    end subroutine perturb_numbers
 
-   !> Puts a motion off in a direction, by roundings of sums of numbers as large as the largest of its links. The terms
-   !> of a velocity are at least an angular velocity times a length; those of an acceleration have the square of the
+   !> Changes a motion in a direction, by roundings of sums of numbers as large as the largest of its links. The terms
+   !> of a velocity are at least an angular velocity times a length; the terms of an acceleration have the square of the
    !> angular velocity. A coordinate that is zero and rests stays zero, but for angles, which may cancel. Links that
    !> turn as one still turn as one.
    subroutine perturb_sums(tree, length, k, roundings, q)
-      type(spanning_tree_t), intent(in) :: tree
-      real(wp), intent(in) :: length         !< characteristic length
+      type(spanning_tree_t), intent(in) :: tree   !< of the mechanism
+      real(wp), intent(in) :: length         !< characteristic length, in the deck's unit
       integer, intent(in) :: k               !< the direction
-      real(wp), intent(in) :: roundings      !< so many
-      type(motion_t), intent(inout) :: q
+      real(wp), intent(in) :: roundings      !< how many roundings
+      type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; links of which nothing is known, too
       real(wp) :: size_of(2, 0:2), x(0:2)
       integer :: i, c, j
 
@@ -194,9 +196,9 @@ contains
       end do
    end subroutine perturb_sums
 
-   !> Gives the normal deviate of the number with an address, in a direction (Box and Muller).
+   !> Gives the normal deviate of a number, by its address, in a direction (Box and Muller, Ann. Math. Stat. 29, 1958).
    pure real(wp) function deviate(number, k) result(z)
-      type(parameter_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number   !< the address
       integer, intent(in) :: k               !< the direction, from 1
       real(wp) :: u, v
       integer(int64) :: x
@@ -207,7 +209,8 @@ contains
       z = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
    end function deviate
 
-   !> Mixes two integers to a number from 1 to the modulus less one. The fifth power takes no value twice.
+   !> Mixes two integers to a number from 1 to the modulus less one. The fifth power modulo the prime takes no value
+   !> twice.
    pure integer(int64) function mixed(bits, n) result(y)
       integer(int64), intent(in) :: bits     !< from 0 to the modulus less one
       integer, intent(in) :: n               !< at least -1

@@ -22,54 +22,55 @@ module sensitivities
    private
    public :: sensitivities_t, find_sensitivities, has_tolerances
 
-   !> At one instant, in the units of the rows (lengths, radians) and of the numbers on their cards.
+   !> The sensitivities at one instant, in the units of the rows (deck's lengths, radians) over the units of the numbers
+   !> on their cards. Numbers are those with a tolerance.
    type :: sensitivities_t
       logical :: taken = .false.                     !< some number has a tolerance
-      real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests)
+      real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests) the sensitivities
       real(wp), allocatable :: error(:, :, :, :)     !< (3, 0:2, numbers, requests) their errors by rounding
-      integer, allocatable :: known(:)               !< (requests) as `known` of a row: -1 none of them exists
+      integer, allocatable :: known(:)               !< (requests) the highest derivative that exists; -1: none
       logical, allocatable :: jams(:)                !< (numbers) redundant equations do not allow it to change
    end type sensitivities_t
 
    !> A number is changed by about this part of its natural unit, the ninth root of a rounding. With three steps of
    !> Richardson's extrapolation the error of the difference is the eighth power of the change, about as large as the
-   !> error that rounding leaves in it. If the number changes to one side, the fifth root has the fourth power.
+   !> error that rounding leaves in it.
    real(wp), parameter :: usual_step = 0.5_wp*epsilon(1.0_wp)**(1.0_wp/9.0_wp)
+   !> A number that changes to one side only: the error is the fourth power, and the change the fifth root.
    real(wp), parameter :: step_to_one_side = 0.5_wp*epsilon(1.0_wp)**0.2_wp
-   !> So many steps, each half the one before; the sensitivity is the sum of these parts of their slopes.
+   !> There are so many steps, each half the one before; the sensitivity is the sum of these parts of their slopes.
    integer, parameter :: halvings = 4
    real(wp), parameter :: of_both_sides(halvings) = [-1.0_wp, 84.0_wp, -1344.0_wp, 4096.0_wp]/2835.0_wp
    real(wp), parameter :: of_one_side(halvings) = [-1.0_wp, 14.0_wp, -56.0_wp, 64.0_wp]/21.0_wp
-   !> The error of a sensitivity is the rounding error of a row over the step, times this: the errors of all rows
-   !> differ.
+   !> The error of a sensitivity is the rounding error of a row over the step, times this factor: errors of rows are
+   !> independent.
    real(wp), parameter :: amplification_of_both = norm2(of_both_sides*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])/sqrt(2.0_wp)
    real(wp), parameter :: amplification_of_one = norm2(of_one_side*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])*sqrt(2.0_wp)
    !> The step is shorter if an unknown would change by more than this (rad, unit of the block), or with a larger
    !> Kantorovich ratio r. At the distance d from a dead point a change by h has r = h/(2 d). Accelerations are as
    !> d**-2.5 there, and their difference has the relative error 0.6 r**8.
    real(wp), parameter :: max_unknown_change = 4.0_wp*usual_step, max_ratio = 6.0e-2_wp
-   !> Of the largest step that these limits allow: a step below this part was made too short, and leaves a larger
-   !> rounding.
+   !> A step below this part of the largest step that these limits allow is too short: rounding is larger than needed.
    real(wp), parameter :: too_near = 0.25_wp
    !> Beyond the limit of a motion there is no root: the step counts as so many times too long, or more.
    real(wp), parameter :: no_root = 4.0_wp
-   integer, parameter :: max_attempts = 12
+   integer, parameter :: max_attempts = 12        !< steps that are tried; each attempt may be a thousand times shorter
    !> The closure error of redundant equations grows at most by this factor if a number may change.
    real(wp), parameter :: more_open = 2.0_wp
 
 contains
 
-   !> Finds the sensitivities of all requests of a mechanism at its motion. Sensitivities that do not exist are not
-   !> `known`.
+   !> Finds the sensitivities of all requests of a mechanism at a motion. Of sensitivities that do not exist found%known
+   !> is -1, of numbers that cannot change found%jams is true.
    subroutine find_sensitivities(estimator, m, b, x, state, q, estimate, found)
-      type(estimator_t), intent(inout) :: estimator
-      type(mechanism_t), intent(in) :: m
+      type(estimator_t), intent(inout) :: estimator   !< of `m`
+      type(mechanism_t), intent(in) :: m     !< with tolerances
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: state
-      type(motion_t), intent(in) :: q
+      type(state_t), intent(in) :: state     !< of the motion
+      type(motion_t), intent(in) :: q        !< the motion
       type(error_estimate_t), intent(in) :: estimate   !< of the motion, by `estimator`
-      type(sensitivities_t), intent(inout) :: found
+      type(sensitivities_t), intent(inout) :: found   !< the sensitivities
       type(row_t), dimension(size(m%requests)) :: middle, up, down
       type(row_t) :: row
       real(wp) :: step, h, factor
@@ -114,6 +115,7 @@ contains
                      found%of(:, :, d, i) = found%of(:, :, d, i) + factor*(up(i)%value - down(i)%value)
                end do
             end do
+
             do i = 1, size(m%requests)
                found%known(i) = min(found%known(i), order)
                if (.not. (estimate%taken .and. estimate%may_lose_digits)) cycle
@@ -126,15 +128,15 @@ contains
             end do
          end associate
       end do
-      ! Its numbers belong to no direction.
+      ! The numbers of changed mechanism 0 belong to no direction of an error estimate.
       estimator%perturbed(0)%is_ready = .false.
 
    contains
 
-      !> Finds the rows of a mechanism of the same structure.
+      !> Finds the rows of a mechanism with changed numbers near the motion.
       subroutine find_rows(rows, changed)
          type(row_t), intent(inout) :: rows(:)   !< (requests)
-         type(mechanism_t), intent(in) :: changed
+         type(mechanism_t), intent(in) :: changed   !< with the links, points, pairs and drives of `m`
 
          associate (p => estimator%perturbed(0))
             p%m = changed
@@ -143,11 +145,12 @@ contains
          end associate
       end subroutine find_rows
 
-      !> Finds the rows with number `d` changed.
+      !> Finds the rows with number `d` changed near the motion. If redundant equations do not allow the change,
+      !> found%jams becomes true.
       subroutine find_changed_rows(rows, one, by)
          type(row_t), intent(inout) :: rows(:)   !< (requests)
          type(tolerance_t), intent(in) :: one   !< of the number
-         real(wp), intent(in) :: by          !< its change, in its unit
+         real(wp), intent(in) :: by          !< the change of the number, in the units of `mechanism_t`
          type(mechanism_t) :: changed
 
          changed = m
@@ -156,11 +159,11 @@ contains
          found%jams(d) = found%jams(d) .or. estimator%place%jams
       end subroutine find_changed_rows
 
-      !> Finds the step by which a number is changed, with the rows `up` there.
+      !> Finds the step by which a number is changed, and the rows with the changed number, in `up`.
       subroutine find_step(one, side, step)
          type(tolerance_t), intent(in) :: one   !< of the number
-         integer, intent(in) :: side         !< to which it may change: -1, 1, or 0: to both
-         real(wp), intent(out) :: step       !< in the unit of the number; above 0 unless `side` is -1
+         integer, intent(in) :: side         !< to which the number may change: 1 up, -1 down, 0 to both
+         real(wp), intent(out) :: step       !< in the units of `mechanism_t`; above 0 unless `side` is -1
          real(wp) :: usual, too_far
          integer :: k
 
@@ -168,7 +171,7 @@ contains
          step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
             call find_changed_rows(up, one, step)
-            ! On a dead point only links that drives move are known, and there is no distance to it.
+            ! On a dead point only links that drives move are known, and no step is too near the dead point.
             if (estimator%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
             too_far = max(estimator%place%change/max_unknown_change, estimator%place%ratio/max_ratio, too_near/2.0_wp)
             if (any(up%known < middle%known)) too_far = max(too_far, no_root)
@@ -178,8 +181,8 @@ contains
       end subroutine find_step
    end subroutine find_sensitivities
 
-   !> Gives the natural unit of a number, of the characteristic length and rate, in the units of `mechanism_t`: a
-   !> change by it has the effect 1 on the motion.
+   !> Gives the natural unit of a number, a product of powers of characteristic length and rate, in the units of
+   !> `mechanism_t`: a change by this unit changes the motion by about 1 characteristic length or rad.
    pure real(wp) function natural_unit(one, sizes)
       type(tolerance_t), intent(in) :: one   !< of the number
       type(sizes_t), intent(in) :: sizes     !< of the mechanism
@@ -199,14 +202,14 @@ contains
 
    !> Finds which derivatives with respect to a number exist at a time, and on which side: the joints of a rise may be
    !> near. A start or a duration that grows moves joints to later times. At a joint that moves, the derivative of the
-   !> acceleration, or of the velocity, with respect to the number is another one on either side.
+   !> acceleration, or of the velocity, with respect to the number differs from one side to the other.
    pure subroutine look_at_joint(m, one, t, step, side, order)
       type(mechanism_t), intent(in) :: m
       type(tolerance_t), intent(in) :: one   !< of the number
-      real(wp), intent(in) :: t              !< time
-      real(wp), intent(in) :: step           !< the number changes by it, in its unit
-      integer, intent(out) :: side           !< to which it may change by a few steps: -1, 1, or 0: to both
-      integer, intent(out) :: order          !< the highest derivative with respect to time, 0 to 2, that has one
+      real(wp), intent(in) :: t              !< time, in the deck's unit
+      real(wp), intent(in) :: step           !< the change of the number, in the units of `mechanism_t`
+      integer, intent(out) :: side           !< to which it may change by a few steps: 1 up, -1 down, 0 to both
+      integer, intent(out) :: order          !< highest derivative with respect to time, 0 to 2, that has a sensitivity
       real(wp) :: joints(3), ahead
 
       side = 0

@@ -1,6 +1,6 @@
-!> All assemblies of a mechanism at one instant: a tree, in which each assembly of the earlier blocks gives the next one
-!> its problem. A block is solved again only if something that it builds on has changed. Each assembly is proved.
-!> If all are known, a run begins in the one that is nearest to the deck's estimate.
+!> All assemblies of a mechanism at one instant: a tree, in which each assembly of earlier blocks gives the next block
+!> its equations. A block is solved again only if a block on which it builds has changed. Each assembly is proved.
+!> If all assemblies are known, a run begins in the assembly that is nearest to the deck's estimate.
 module assemblies
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -25,48 +25,51 @@ module assemblies
    private
    public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, find_nearest, max_assemblies
 
-   !> A search ends after so many.
+   !> A search ends after so many assemblies: ten blocks with two positions each have more.
    integer, parameter :: max_assemblies = 1000
    !> Assemblies whose distances differ by less than this part stay in the order in which they are found.
    real(wp), parameter :: same_distance_part = sqrt(epsilon(1.0_wp))
-   !> A cylinder shorter than this part of the characteristic length may have the length 0, whatever is proved.
+   !> A cylinder shorter than this part of the characteristic length may have the length 0: the deck's digits leave so
+   !> much uncertain.
    real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
 
    !> An assembly.
    type :: assembly_t
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
       integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
-      logical :: is_proved = .false.            !< near it there is exactly one solution, see `position_proof`
+      logical :: is_proved = .false.            !< it is proved that near it there is exactly one solution
       logical :: is_out = .false.               !< a cylinder is out of its stroke
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate: the root of the sum of `squared_distances`
    end type assembly_t
 
-   !> The findings of a block that iterates, in all assemblies of the blocks that it builds on.
+   !> The findings of a block that is not explicit, in all assemblies of the blocks on which it builds.
    type, extends(block_positions_t) :: assembly_block_t
-      integer :: block = 0                      !< its number
-      !> The links whose angle it solves for. If all its unknowns are slides: the links that have their place then and
-      !> no earlier.
+      integer :: block = 0                      !< the number of the block
+      !> Numbers of the links whose angles are its unknowns; if all its unknowns are slides, of the links whose position
+      !> is known after this block and not before.
       integer, allocatable :: links(:)
-      integer :: unknowns = 0                   !< of the block
+      integer :: unknowns = 0                   !< how many unknowns the block has
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
    end type assembly_block_t
 
+   !> All assemblies that were found.
    type :: assemblies_t
-      type(assembly_t), allocatable :: list(:)         !< nearest to the estimate first
-      type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
-      logical :: are_more = .false.                    !< than max_assemblies
-      integer :: chosen = 0                            !< in this one a run begins; 0: in none of them
-      integer :: negative = 0                          !< so many have a cylinder of negative length, and are not listed
-      logical :: is_missed = .false.                   !< a run begins at a position that is none of them
-      logical :: is_known = .true.                     !< no other ones exist, but for `moves` of blocks
+      type(assembly_t), allocatable :: list(:)         !< the nearest to the estimate first
+      type(assembly_block_t), allocatable :: blocks(:) !< the blocks that are not explicit, in solving order
+      logical :: are_more = .false.                    !< the search ended at `max_assemblies`
+      integer :: chosen = 0                            !< number of the assembly in which a run begins; 0: in none
+      integer :: negative = 0                          !< how many have a cylinder of negative length: not listed
+      logical :: is_missed = .false.                   !< a run begins at a position that is none of these assemblies
+      logical :: is_known = .true.                     !< no other assembly exists, but for blocks that can move
    end type assemblies_t
 
 contains
 
-   !> Finds all assemblies of a mechanism at a time; none if its structure cannot be solved.
+   !> Finds all assemblies of a mechanism at a time; none if its structure is not solvable. It is not found in which of
+   !> them a run begins.
    subroutine find_assemblies(m, t, assemblies)
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
-      real(wp), intent(in) :: t              !< time
+      real(wp), intent(in) :: t              !< time, in the deck's unit
       type(assemblies_t), intent(out) :: assemblies
       type(continuation_t) :: f
       type(assembly_block_t) :: one
@@ -93,12 +96,13 @@ contains
          .or. any(assemblies%blocks%is_large .or. assemblies%blocks%failed > 0))
    end subroutine find_assemblies
 
-   !> Finds all assemblies of a mechanism, and the one in which a run begins. The deck's estimate chooses it, unless
-   !> another one is nearer and all are known, or the chosen position is not separate. Then the nearest assembly
-   !> becomes the estimate. If the estimate chooses a position that was not found, some may be missing.
+   !> Finds all assemblies of a mechanism, and the assembly in which a run begins. A run from the deck's estimate leads
+   !> to it, unless all assemblies are known and another one is nearer, or the run leads to a position that can move.
+   !> Then the nearest assembly becomes the estimate. If the run leads to a position that is none of the assemblies,
+   !> some may be missing.
    subroutine find_nearest(m, t, assemblies)
-      type(mechanism_t), intent(inout) :: m  !< one independent mechanism
-      real(wp), intent(in) :: t              !< time
+      type(mechanism_t), intent(inout) :: m  !< one independent mechanism; the estimates of its links may change
+      real(wp), intent(in) :: t              !< time, in the deck's unit
       type(assemblies_t), intent(out) :: assemblies
       type(continuation_t) :: f
       type(motion_t) :: q
@@ -113,7 +117,7 @@ contains
       if (is_found) then
          q = new_motion(size(m%links))
          call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, unused)
-         ! Of all that are near enough it is the nearest one, whole turns not counted.
+         ! Of all assemblies that are near enough the nearest counts, without whole turns.
          nearest = same_place
          do i = 1, size(assemblies%list)
             apart = maxval(separation(assemblies%list(i)%position, q%position, f%geometry%span))
@@ -137,7 +141,8 @@ contains
 
    contains
 
-      !> Tells whether all are known, and the first of the list is nearer than the position that the estimate chooses.
+      !> Tells whether all assemblies are known, and the first of the list is nearer than the position to which a run
+      !> from the estimate leads.
       logical function is_nearer_one() result(is)
          is = size(assemblies%list) > 0 .and. assemblies%is_known
          if (is) is = assemblies%list(1)%is_proved
@@ -152,15 +157,16 @@ contains
       end function is_nearer_one
    end subroutine find_nearest
 
-   !> Goes through all choices of a position for each block. `changed` has the number of the last choice that changed an
-   !> unknown; `seen` has the number of the last choice before a block was solved.
+   !> Finds all assemblies by going through all choices of a position for each block, depth first.
    subroutine search(m, continuation, assemblies)
       type(mechanism_t), intent(in) :: m
-      type(continuation_t), intent(inout) :: continuation
-      type(assemblies_t), intent(inout) :: assemblies
+      type(continuation_t), intent(inout) :: continuation   !< of `m`, with the drives; state and needed blocks change
+      type(assemblies_t), intent(inout) :: assemblies   !< with its blocks; assemblies and findings of blocks are added
       type(block_positions_t) :: found(size(continuation%blocks%list))
       type(ball_numbers_t) :: p
       type(proved_position_t) :: q
+      ! (blocks) chosen: the number of its position; seen: the number of the last choice before its positions were
+      ! found. (0:unknowns) changed: the number of the last choice that changed it.
       integer :: chosen(size(found)), seen(size(found)), changed(0:continuation%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
@@ -189,6 +195,7 @@ contains
                max_group, continuation%guess%starts(i)%paths, found(i))
             seen(i) = choice
          end if
+
          chosen(i) = chosen(i) + 1
          if (chosen(i) > size(found(i)%sign_of)) then
             chosen(i) = 0
@@ -200,21 +207,22 @@ contains
          changed(own_unknowns(continuation%blocks, i)) = choice
          i = i + 1
       end do
+
       do k = 1, size(assemblies%blocks)
          assemblies%blocks(k)%block_positions_t = found(assemblies%blocks(k)%block)
       end do
    end subroutine search
 
-   !> Puts an assembly among the others, the nearest first. If distances are equal they keep the order in which they
-   !> were found. An assembly with a cylinder of negative length is only counted.
+   !> Inserts an assembly into the list, the nearest first. At equal distances the assembly found first comes first. An
+   !> assembly with a cylinder of negative length is only counted.
    subroutine record_assembly(continuation, found, chosen, is_proved, numbers, proof, assemblies)
       type(continuation_t), intent(in) :: continuation   !< its state is the assembly
-      type(block_positions_t), intent(in) :: found(:)   !< (blocks)
+      type(block_positions_t), intent(in) :: found(:)   !< (blocks) all positions for the positions of earlier blocks
       integer, intent(in) :: chosen(:)       !< (blocks) numbers of the positions of the assembly
-      logical, intent(in) :: is_proved       !< the assembly is proved,
-      type(ball_numbers_t), intent(in) :: numbers     !< of the mechanism
-      type(proved_position_t), intent(in) :: proof    !< and lies in these balls
-      type(assemblies_t), intent(inout) :: assemblies
+      logical, intent(in) :: is_proved       !< the assembly is proved
+      type(ball_numbers_t), intent(in) :: numbers     !< the geometry in balls
+      type(proved_position_t), intent(in) :: proof    !< if proved: the balls that hold the assembly
+      type(assemblies_t), intent(inout) :: assemblies   !< one more, or one more counted as negative
       type(assembly_t) :: one
       type(motion_t) :: q
       type(ball_t) :: links(3, 0:2, size(continuation%guess%links, 2))
@@ -231,7 +239,7 @@ contains
       do i = 1, size(continuation%geometry%cylinders)
          associate (c => continuation%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
-            ! A length that may be 0 is kept, and nothing is proved of its sign.
+            ! An assembly with a length that may be 0 is listed, but not proved: the sign of the length is unknown.
             zero = max(zero_length*continuation%geometry%span, &
                3.0_wp*off(1, 0) + off(2, 0)*(norm2(c%p) + norm2(c%q) + abs(length)))
             if (abs(length) <= zero) one%is_proved = .false.
@@ -240,6 +248,7 @@ contains
          if (length < -zero) assemblies%negative = assemblies%negative + 1
          if (length < -zero) return
       end do
+
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%distance = sqrt(sum(squared_distances(one%position, continuation%guess%links, continuation%geometry%span)))

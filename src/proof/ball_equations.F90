@@ -1,5 +1,5 @@
-!> The equations of one block in balls, and the numbers and the state of which they are made: the text of equations.inc
-!> and of number_types.inc.
+!> The equations of one block in balls, and the geometry and the state of which they are made: the text of equations.inc
+!> and of number_types.inc, compiled for balls.
 #define NUMBER type(ball_t)
 #define IS(value) = ball_t(value, 0.0_wp)
 #define LIST(list) list(*)
@@ -21,69 +21,70 @@ module ball_equations
 
 #include "number_types.inc"
 
-   !> The geometry in balls; the components are those of `geometry_t`.
+   !> The geometry in balls; units are those of `geometry_t`.
    type :: ball_numbers_t
-      type(row_numbers_t), allocatable :: rows(:)
-      type(loop_numbers_t), allocatable :: loops(:)
-      type(link_numbers_t), allocatable :: links(:)    !< in the order of the chain, those that are wanted
-      type(vector_t), allocatable :: d(:), e(:)
+      type(row_numbers_t), allocatable :: rows(:)      !< (rows)
+      type(loop_numbers_t), allocatable :: loops(:)    !< (loops)
+      type(link_numbers_t), allocatable :: links(:)    !< (wanted links) in the order of the chain
+      type(vector_t), allocatable :: d(:), e(:)        !< (body vectors), (slides) in the axes of their orientations
    end type ball_numbers_t
 
-   !> The state in balls; the components are those of `state_t`.
+   !> The state in balls; units are those of `state_t`.
    type :: ball_state_t
       type(unknown_t), allocatable :: u(:)             !< (0:unknowns)
-      type(loop_state_t), allocatable :: loop(:)
-      type(vector_t), allocatable :: own(:), guide(:)
-      type(ball_t), allocatable :: drive(:, :)         !< (0:2, 0:drives)
+      type(loop_state_t), allocatable :: loop(:)       !< (loops)
+      type(vector_t), allocatable :: own(:), guide(:)  !< (body vectors), (slides) rotated
+      type(ball_t), allocatable :: drive(:, :)         !< (0:2, 0:drives) value, rate, acceleration of each drive
    end type ball_state_t
 
 contains
 
-   !> Makes room for the state of a structure, all at rest.
+   !> Makes a state in balls: all unknowns and drives are 0 and rest.
    pure function new_ball_state(b, drives) result(s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives          !< number of drives
+      integer, intent(in) :: drives          !< how many drives there are
       type(ball_state_t) :: s
 
       allocate (s%u(0:b%unknowns), s%loop(size(b%loops)), s%own(size(b%body_vectors)), s%guide(size(b%slides)))
       allocate (s%drive(0:2, 0:drives), source=ball_t(0.0_wp, 0.0_wp))
    end function new_ball_state
 
-   !> Gives an unknown a value, and its direction if it is an angle.
+   !> Gives an unknown a value in a ball, and cosine and sine if it is an angle. Rates stay.
    pure subroutine set_ball(b, unknown, value, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknown         !< its number
+      integer, intent(in) :: unknown         !< the number of the unknown
       type(ball_t), intent(in) :: value      !< rad or unit of the block
-      type(ball_state_t), intent(inout) :: balls
+      type(ball_state_t), intent(inout) :: balls   !< the state
 
       balls%u(unknown)%value = value
       if (unknown <= b%orientations) call set_direction(balls%u(unknown))
    end subroutine set_ball
 
-   !> Gives the value of an unknown a radius, about the midpoint that it has.
+   !> Gives the value of an unknown a radius about its midpoint, and cosine and sine the radii that follow.
    pure subroutine set_radius(b, unknown, radius, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknown         !< its number
+      integer, intent(in) :: unknown         !< the number of the unknown
       real(wp), intent(in) :: radius         !< rad or unit of the block
-      type(ball_state_t), intent(inout) :: balls
+      type(ball_state_t), intent(inout) :: balls   !< the state
 
       balls%u(unknown)%value%radius = radius
       if (unknown <= b%orientations) call widen(balls%u(unknown))
    end subroutine set_radius
 
-   !> Computes cosine and sine of an angle. The library's are taken to be right within two units in the last place.
+   !> Computes cosine and sine of an angle in balls. Results of the library are taken to be right within two units in
+   !> the last place.
    pure subroutine set_direction(unknown)
-      type(unknown_t), intent(inout) :: unknown
+      type(unknown_t), intent(inout) :: unknown   !< an angle with its value
 
       unknown%c%mid = cos(unknown%value%mid)
       unknown%s%mid = sin(unknown%value%mid)
       call widen(unknown)
    end subroutine set_direction
 
-   !> Computes the radii of cosine and sine from the radius of the angle:
-   !> |cos(m + r) - cos m| <= |sin m| r + |cos m| r^2/2.
+   !> Computes the radii of cosine and sine of an angle from its midpoint m and radius r:
+   !> |cos(m + r) - cos m| <= |sin m| r + |cos m| r^2/2, and likewise for the sine.
    pure subroutine widen(unknown)
-      type(unknown_t), intent(inout) :: unknown
+      type(unknown_t), intent(inout) :: unknown   !< an angle with the midpoints of cosine and sine
       real(wp) :: half, c, s
 
       associate (r => unknown%value%radius)
@@ -99,11 +100,11 @@ contains
    !> earlier blocks.
    pure subroutine assemble_balls(b, numbers, i, balls, jacobian, residuals, right_side)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< of the mechanism
       integer, intent(in) :: i               !< number of the block
-      type(ball_state_t), intent(inout) :: balls   !< the state
-      type(ball_t), intent(inout) :: jacobian(*)   !< stored as in the shape of the block
-      type(ball_t), intent(inout) :: residuals(*), right_side(*)   !< (rows)
+      type(ball_state_t), intent(inout) :: balls   !< the state; given parts and rotated vectors of the block are set
+      type(ball_t), intent(inout) :: jacobian(*)   !< (entries) stored by the shape of the block
+      type(ball_t), intent(inout) :: residuals(*), right_side(*)   !< (rows) unit of the loop or rad; by time
 
       associate (block => b%list(i))
          call find_known(block%first_loop, block%last_loop, b%loops, numbers%loops, b%body_vectors, numbers%d, &
@@ -113,12 +114,12 @@ contains
       end associate
    end subroutine assemble_balls
 
-   !> Computes the right-hand side for the accelerations of a block, with the vectors of the last `assemble_balls`.
+   !> Computes the right-hand side for the accelerations of a block from its velocities.
    pure subroutine ball_accelerations(b, i, balls, right_side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< number of the block
-      type(ball_state_t), intent(in) :: balls   !< the state
-      type(ball_t), intent(inout) :: right_side(*)   !< (rows)
+      type(ball_state_t), intent(in) :: balls   !< the state, with the rotated vectors of the last `assemble_balls`
+      type(ball_t), intent(inout) :: right_side(*)   !< (rows) unit of the loop or rad, by time squared
       integer :: m
 
       associate (block => b%list(i))

@@ -1,9 +1,9 @@
 !> The geometry of the blocks in balls. A radius bounds the roundings of sums and of the deck's decimals.
 !>
-!> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the
-!> deck's decimals are one. Splines of tables count as they are computed. A vector that is zero in the structure (its
-!> terms cancel but for rounding) is zero. Sines and cosines of the library are taken to be right within two units in
-!> the last place; all other operations round to nearest.
+!> The exact mechanism is any mechanism whose numbers differ from those of `mechanism_t` by at most four roundings each:
+!> the mechanism of the deck's decimals is one of these. Splines of tables are exact as they are computed. A vector that
+!> is zero in the structure (its terms cancel but for rounding) is zero. Sines and cosines of the library are taken to
+!> be right within two units in the last place; all other operations round to nearest.
 module ball_numbers
    use kinds, only: wp
    use plane_vectors, only: length_of, real_vector_t => vector_t
@@ -22,11 +22,11 @@ module ball_numbers
 
 contains
 
-   !> Makes the geometry of a mechanism in balls.
+   !> Makes the geometry of a mechanism in balls, about its geometry in reals.
    function new_ball_numbers(m, b, x) result(p)
       type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
+      type(blocks_t), intent(in) :: b        !< of `m`, solvable
+      type(geometry_t), intent(in) :: x      !< of `m`, with its chain
       type(ball_numbers_t) :: p
       real(wp) :: angle, of_direction, of_vectors, lengths(0:b%tree%orientations)
       integer :: i, k
@@ -38,7 +38,7 @@ contains
       do i = 1, size(b%loops)
          associate (g => b%loops(i), own => x%loops(i), v => b%equations%vector_loops)
             if (g%kind == loop_angles) cycle
-            ! With each orientation: the length of all vectors of the loop that turn with it.
+            ! (0:orientations) The length of all vectors of the loop that turn with the orientation, in the deck's unit.
             lengths = 0.0_wp
             do k = v%first_term(g%vector_loop), v%first_term(g%vector_loop + 1) - 1
                associate (l => lengths(v%vector_orientation(v%term_vector(k))), term => abs(v%terms(:, k)))
@@ -80,16 +80,16 @@ contains
          + merge(2.0_wp*angle, 0.0_wp, b%rows%angular))*room
    end function new_ball_numbers
 
-   !> Makes the ball of a vector of which each component is known up to a radius.
+   !> Makes a vector in balls: about each component of a vector, with one radius.
    elemental type(vector_t) function around(vector, radius)
-      type(real_vector_t), intent(in) :: vector
+      type(real_vector_t), intent(in) :: vector   !< the midpoints
       real(wp), intent(in) :: radius         !< in the unit of the vector
 
       around = vector_t(ball_t(vector%x, radius*room), ball_t(vector%y, radius*room))
    end function around
 
-   !> Bounds the errors, in rad, of all directions of guides and of all angles of links from their orientations. These
-   !> are sums of angles of the deck, and the bound takes all angles on cards that can be in such a sum.
+   !> Bounds the errors, in rad, of all directions of guides and of all angles of links from their orientations. Such
+   !> an angle is a sum of angles of the deck, and the bound takes all angles on cards that can be in such a sum.
    pure real(wp) function angle_error(m) result(angle)
       type(mechanism_t), intent(in) :: m
 
@@ -99,8 +99,8 @@ contains
       end associate
    end function angle_error
 
-   !> Bounds the distance of a point from the origin of its link, in the deck's unit. A point of the ground is counted
-   !> from the origins of the motion and of the plane.
+   !> Bounds the length of the vector to a point from the origin of its link, in the deck's unit. To a point of the
+   !> ground the vectors from the deck's origin and to the origin of positions are added.
    elemental real(wp) function length_in_link(m, i) result(length)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< number of the point

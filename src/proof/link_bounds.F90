@@ -1,5 +1,4 @@
-!> From the balls of the unknowns to the balls of links, along the tree of `link_motion`, with the text of
-!> link_motion.inc.
+!> The motion of the links in balls from the unknowns in balls, along the tree, with the text of link_motion.inc.
 #define NUMBER type(ball_t)
 #define ZERO ball_t(0.0_wp, 0.0_wp)
 #define TWO ball_t(2.0_wp, 0.0_wp)
@@ -15,15 +14,16 @@ module link_bounds
 
 contains
 
-   !> Bounds the exact places and angles of all links and their derivatives; those of the ground and of links that are
-   !> not needed are 0.
+   !> Bounds the exact motion of all links, and the errors of the computed motion. Of ground links, and of links that
+   !> are not wanted, the balls are 0.
    pure subroutine bound_links(x, numbers, balls, q, links, largest)
-      type(geometry_t), intent(in) :: x
-      type(ball_numbers_t), intent(in) :: numbers
+      type(geometry_t), intent(in) :: x      !< with its chain
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(ball_state_t), intent(in) :: balls   !< hold the exact unknowns
-      type(motion_t), intent(in) :: q        !< as computed
-      type(ball_t), intent(out) :: links(3, 0:2, size(q%position, 2))   !< x and y from the origin of `q`, angle (rad)
-      real(wp), intent(out) :: largest(2, 0:2)   !< largest error of the lengths and angles (rad) of `q`
+      type(motion_t), intent(in) :: q        !< the computed motion
+      !> (3, 0:2, links) x, y (from the origin of `q`, deck's unit), phi (rad), and their derivatives by time.
+      type(ball_t), intent(out) :: links(3, 0:2, size(q%position, 2))
+      real(wp), intent(out) :: largest(2, 0:2)   !< largest errors of lengths and angles (rad), and of derivatives
       type(vector_t) :: place(0:2)
       real(wp) :: error(3, 0:2)
       integer :: i

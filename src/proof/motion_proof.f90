@@ -1,8 +1,8 @@
-!> The proofs of card PROVE, instant by instant: the position, with bounds of all that is computed there, and the step
-!> to it from the last instant that was proved.
+!> The proofs of card PROVE, instant by instant: of the position, with bounds of the motion of links, and of the step to
+!> it from the last instant that was proved.
 !>
-!> Proof of a step: of the motion between two instants, in as many parts as that takes. A part that is not proved is
-!> divided in its middle, at which the blocks are solved once more.
+!> The proof of a step is a proof of the motion between two instants, in parts. A part that is not proved is divided in
+!> its middle, at which the blocks are solved once more.
 module motion_proof
    use assertions, only: asserts, assert
    use kinds, only: wp
@@ -23,55 +23,57 @@ module motion_proof
    private
    public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_proof_t, prove_step
 
-   !> Up to so many tubes are tried in a step, none shorter than this part of the step.
+   !> Up to so many tubes are tried in a step. It bounds the time of a step that cannot be proved.
    integer, parameter :: max_tubes = 1024
+   !> A part shorter than this part of the step is not divided: twenty halvings have not helped.
    real(wp), parameter :: min_part_of_step = 1.0e-6_wp
 
    !> The proof of a step.
    type :: step_proof_t
-      logical :: is_proved = .false.
-      integer :: parts = 0                        !< proved
-      integer :: tries = 0                        !< tubes tried
-      real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
-      integer :: block = 0                        !< the block that is not proved; 0: none
+      logical :: is_proved = .false.              !< all its parts are proved
+      integer :: parts = 0                        !< how many parts were proved
+      integer :: tries = 0                        !< how many tubes were tried
+      real(wp) :: radius = 0.0_wp                 !< the largest radius of its tubes, in rad and units of the blocks
+      integer :: block = 0                        !< the block without proof in the last tube that failed; 0: none
    end type step_proof_t
 
-   !> The means of all proofs of a mechanism.
+   !> The data that all proofs of a mechanism share.
    type :: motion_prover_t
       logical :: has_begun = .false.              !< a position is proved
-      type(ball_numbers_t) :: numbers
-      type(proved_position_t) :: at(2)                     !< the last position that was proved, and the one at hand
-      integer :: now = 1                          !< which of them is at hand
+      type(ball_numbers_t) :: numbers             !< the geometry in balls
+      type(proved_position_t) :: at(2)            !< the last position that was proved, and the one to be proved next
+      integer :: now = 1                          !< index of the one to be proved next
    end type motion_prover_t
 
    !> The proof of an instant.
    type :: motion_proof_t
-      logical :: taken = .false.                  !< a PROVE card asks for it
+      logical :: taken = .false.                  !< a PROVE card requests it
       logical :: is_proved = .false.              !< its position is proved
       logical :: has_step = .false.               !< a step leads to it from a position that was proved
-      type(step_proof_t) :: step
-      real(wp) :: closure_error = 0.0_wp          !< bound, of redundant equations at the instant, in block units
-      !> (3, 0:2, links) Place, angle and their derivatives, if bounds are asked for, in the deck's units and rad.
+      type(step_proof_t) :: step                  !< if `has_step`
+      real(wp) :: closure_error = 0.0_wp          !< bound of redundant equations, unit of the loop or rad
+      !> (3, 0:2, links) x, y, phi and their derivatives, if bounds are requested, in the deck's units and rad.
       type(ball_t), allocatable :: links(:, :, :)
-      real(wp) :: largest(2, 0:2) = 0.0_wp        !< the largest errors of lengths and angles in them
-      integer, allocatable :: failed(:)           !< the links of the block that is not proved
-      integer :: too_many = 0                     !< its unknowns, if they are too many
+      real(wp) :: largest(2, 0:2) = 0.0_wp        !< largest errors of lengths and angles, and of their derivatives
+      integer, allocatable :: failed(:)           !< numbers of the links of the block that is not proved
+      integer :: too_many = 0                     !< how many unknowns that block has, if they are too many
    end type motion_proof_t
 
 contains
 
    !> Proves a motion and the step to it. If a proof fails, `found` has the links of the first block that is not proved.
+   !> Of an incomplete motion nothing is proved.
    subroutine prove_motion(prover, m, b, x, path, s, q, bounded, found)
-      type(motion_prover_t), intent(inout) :: prover
+      type(motion_prover_t), intent(inout) :: prover   !< with the last position that was proved
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(state_t), intent(in) :: s
-      type(motion_t), intent(in) :: q
-      logical, intent(in) :: bounded         !< with bounds of all that is computed; or only of positions, for the step
-      type(motion_proof_t), intent(inout) :: found
-      integer, allocatable :: block_of(:)         !< of the ground, none, and of each unknown
+      type(state_t), intent(in) :: s         !< the motion of the unknowns
+      type(motion_t), intent(in) :: q        !< the motion of all links
+      logical, intent(in) :: bounded         !< with bounds of the motion of links; otherwise positions, for the step
+      type(motion_proof_t), intent(inout) :: found   !< the proof
+      integer, allocatable :: block_of(:)         ! 0 for the ground's angle, then the block of each unknown
       integer :: failed, i
 
       if (asserts) call assert(size(q%position, 2) == size(m%links), 'prove_motion: a motion of all links')
@@ -108,20 +110,21 @@ contains
       if (b%list(failed)%shape%n > max_proved_unknowns) found%too_many = b%list(failed)%shape%n
    end subroutine prove_motion
 
-   !> Tells whether all is proved that a PROVE card asks for.
+   !> Tells whether position and step of an instant are proved, or no PROVE card requests a proof.
    pure elemental logical function holds(proof)
-      type(motion_proof_t), intent(in) :: proof
+      type(motion_proof_t), intent(in) :: proof   !< of the instant
 
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of the needed blocks between two proved positions.
+   !> Proves the motion of the needed blocks between two proved positions. The proof ends at the first part that can be
+   !> neither proved nor divided.
    subroutine prove_step(numbers, b, x, path, s, from, to, proof)
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(state_t), intent(in) :: s         !< at `to`
+      type(state_t), intent(in) :: s         !< the computed motion at `to`
       type(proved_position_t), intent(in) :: from, to   !< the proved positions
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
@@ -134,10 +137,10 @@ contains
 
    contains
 
-      !> Proves a part of a step; if there is no tube about it, its two halves.
+      !> Proves a part of a step by one tube or, if there is none, by its two halves. The result is in `proof`.
       recursive subroutine prove_part(from, to, shortest)
-         type(proved_position_t), intent(in) :: from, to   !< proved positions
-         real(wp), intent(in) :: shortest    !< time: a shorter part is not divided
+         type(proved_position_t), intent(in) :: from, to   !< proved positions at its ends
+         real(wp), intent(in) :: shortest    !< a shorter part is not divided, in the deck's unit of time
          type(proved_position_t), allocatable :: middle
          type(solve_report_t) :: c
          integer :: failed
@@ -162,6 +165,7 @@ contains
             + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
          call solve_blocks(b, x, b%needed, w, other, c)
          if (.not. is_solved(c) .or. c%singular .or. c%rates_inconsistent) return
+
          allocate (middle)
          middle = new_placed(b, size(path%laws))
          call prove_position(numbers, b, path, other, 0, middle, failed)
@@ -171,10 +175,10 @@ contains
       end subroutine prove_part
    end subroutine prove_step
 
-   !> Makes room for a tube of a structure.
+   !> Makes an empty tube of a structure, for `prove_tube`.
    pure function new_tube(b, drives) result(tube)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives          !< number of drives
+      integer, intent(in) :: drives          !< how many drives there are
       type(tube_t) :: tube
 
       allocate (tube%radius(0:b%unknowns), source=0.0_wp)

@@ -1,10 +1,11 @@
-!> Proof of a position at one instant: that near the values found for the unknowns of a block there is exactly one
+!> Proof of a position at one instant: that near the computed values of the unknowns of a block there is exactly one
 !> solution of its exact equations, with a bound of its distance from these values; then of rates and accelerations.
-!> Blocks are proved in solving order: the errors of earlier ones count in later ones.
+!> Blocks are proved in solving order: errors of earlier blocks count in later blocks.
 !>
-!> With F(x*) = 0 and |1 - A J| <= k in a ball about x that holds x*, |x - x*| <= |A| |F(x)|/(1 - k). The rates v solve
-!> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations have the corresponding bound. F, J and
-!> b are the equations in balls: of the numbers, of the motion of earlier blocks, and of x.
+!> With F(x*) = 0, A about the inverse of the Jacobian J, and |1 - A J| <= k in a ball about x that holds x*,
+!> |x - x*| <= |A| |F(x)|/(1 - k). The exact rates v* solve J(x*) v* = b(x*): |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k);
+!> accelerations have the corresponding bound. F, J and b are the equations in balls: of the numbers, of the motion of
+!> earlier blocks, and of x.
 !>
 !> The ball is found by Newton and Kantorovich's argument: x - A F(x) maps the ball of radius r about c into itself and
 !> contracts it, if
@@ -34,39 +35,39 @@ module position_proof
    !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, and a step may
    !> have a thousand parts.
    integer, parameter, public :: max_proved_unknowns = 100
-   !> Up to so many balls are tried. Each is larger by the change of the Jacobian in the one before.
+   !> Up to so many balls are tried. Each is larger by the change of the Jacobian in the ball before.
    integer, parameter :: max_balls = 8
-   !> A map that contracts less is not used: 1 less its rate is a divisor.
+   !> A map with a larger rate of contraction is not used: 1 less the rate is a divisor.
    real(wp), parameter :: max_rate = 0.999_wp
-   !> Balls are larger than necessary by this factor.
+   !> Balls are larger than necessary by this factor: roundings of the inequality do not matter then.
    real(wp), parameter :: larger = 1.01_wp
 
    !> The numbers of the proof of a block.
    type :: block_work_t
-      integer, allocatable :: row(:), column(:)   !< (entries) of its Jacobian
+      integer, allocatable :: row(:), column(:)   !< (entries) rows and columns of the entries of its Jacobian J
       type(ball_t), allocatable :: j(:)           !< (entries) the Jacobian
-      type(ball_t), allocatable :: r(:), v(:)     !< (rows) residual, right-hand side for the derivatives
-      real(wp), allocatable :: inverse(:, :)      !< (n, rows) |A|
+      type(ball_t), allocatable :: r(:), v(:)     !< (rows) residuals, right-hand side for the derivatives
+      real(wp), allocatable :: inverse(:, :)      !< (n, rows) |A|, A about the inverse of J
       !> (n) Row sums of |1 - A J|: of the midpoints, at the centre of the ball, and in all of it.
       real(wp), allocatable, dimension(:) :: of_midpoints, at_centre, off
-      real(wp), allocatable :: open(:)            !< (rows) bounds of the equations at the centre
-      real(wp), allocatable :: x(:)               !< (n) |A| times these bounds
+      real(wp), allocatable :: open(:)            !< (rows) bounds of |F| at the centre, unit of the loop or rad
+      real(wp), allocatable :: x(:)               !< (n) |A| times these bounds, rad or unit of the block
    end type block_work_t
 
-   !> A position that was found, and its proof, in the units of the blocks: the exact unknowns and drives lie in balls
-   !> about the found ones.
+   !> A computed position and its proof, in the units of the blocks: the exact unknowns and drives lie in balls about
+   !> the computed ones.
    type, extends(ball_state_t) :: proved_position_t
-      real(wp) :: t = 0.0_wp                      !< time
-      real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at the midpoints of all unknowns
-      real(wp) :: closure_error = 0.0_wp          !< bound, of redundant equations
+      real(wp) :: t = 0.0_wp                      !< time, in the deck's unit
+      real(wp), allocatable :: open(:, :)         !< (0:1, rows) bounds of |F| and |dF/dt| at the computed unknowns
+      real(wp) :: closure_error = 0.0_wp          !< bound of redundant equations, unit of the loop or rad
    end type proved_position_t
 
 contains
 
-   !> Makes room for a position of a structure.
+   !> Makes an empty position of a structure, for `prove_position`.
    pure function new_placed(b, drives) result(q)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives          !< number of drives
+      integer, intent(in) :: drives          !< how many drives there are
       type(proved_position_t) :: q
 
       q%ball_state_t = new_ball_state(b, drives)
@@ -76,12 +77,12 @@ contains
    !> Proves the position of the needed blocks at the time and values of a state, in solving order. The proof ends at
    !> the first block that is not proved.
    subroutine prove_position(numbers, b, path, s, order, placed, failed)
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< the computed motion, with time and drives
       integer, intent(in) :: order           !< 0: position; 2: velocities and accelerations as well
-      type(proved_position_t), intent(inout) :: placed   !< the proof
+      type(proved_position_t), intent(inout) :: placed   !< the proof, as far as it goes
       integer, intent(out) :: failed         !< number of the block that is not proved; 0: all are proved
       type(bounds_t) :: law
       logical :: is_proved
@@ -89,7 +90,7 @@ contains
 
       placed%t = s%t
       placed%closure_error = 0.0_wp
-      ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
+      ! No equation depends on unknowns of later blocks, but some hold them with factors that cancel: any value serves.
       placed%u(:) = unknown_t()
       do i = 1, size(path%laws)
          law = bounds_of(path%laws(i), s%t - number_error*abs(s%t), s%t + number_error*abs(s%t), .true.)
@@ -108,15 +109,15 @@ contains
       failed = 0
    end subroutine prove_position
 
-   !> Proves a block at the values of a state: the values of its unknowns, and their derivatives if these are wanted.
+   !> Proves the values of the unknowns of a block in a state, and their derivatives if these are wanted.
    subroutine prove_block(numbers, b, i, s, order, placed, is_proved)
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< number of the block
       integer, intent(in) :: order           !< 0: values; 2: derivatives as well
-      type(state_t), intent(in) :: s
-      type(proved_position_t), intent(inout) :: placed   !< has earlier blocks, and now this one
-      logical, intent(out) :: is_proved      !< all that was wanted
+      type(state_t), intent(in) :: s         !< the computed motion
+      type(proved_position_t), intent(inout) :: placed   !< with drives and earlier blocks; then also with this block
+      logical, intent(out) :: is_proved      !< values, and derivatives if wanted, are proved
       type(block_work_t) :: w
       type(unknown_t) :: exact
       real(wp) :: radius, largest
@@ -171,13 +172,14 @@ contains
       end associate
    end subroutine prove_block
 
-   !> Computes equations and Jacobian of a block at the centre of a ball, and about the inverse of the Jacobian.
+   !> Computes equations, Jacobian J and an approximate inverse A of a block at the centre of a ball, and bounds |1 - A
+   !> J| there. It prepares `find_ball`.
    subroutine contract(b, numbers, i, balls, work, exists)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: numbers
-      integer, intent(in) :: i               !< number of the block
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
+      integer, intent(in) :: i               !< number of the block, which is not explicit
       type(ball_state_t), intent(inout) :: balls   !< the state; unknowns of the block are at the centre of the ball
-      type(block_work_t), intent(out) :: work
+      type(block_work_t), intent(out) :: work   !< all but `open`, `off` and `x`
       logical, intent(out) :: exists         !< there is an inverse, and the block has not too many unknowns
       real(wp), allocatable :: midpoints(:, :)    ! of the Jacobian
       integer :: k
@@ -189,6 +191,7 @@ contains
             allocate (work%row(entries), work%column(entries), work%j(entries), work%r(rows), work%v(rows), &
                work%open(rows), work%inverse(n, rows), work%of_midpoints(n), work%at_centre(n), work%off(n), work%x(n))
             allocate (midpoints(rows, n), source=0.0_wp)
+
             if (shape%pattern == 0) then
                work%row(:) = [(1 + modulo(k - 1, rows), k=1, entries)]
                work%column(:) = [(1 + (k - 1)/rows, k=1, entries)]
@@ -211,9 +214,9 @@ contains
       if (exists) call find_off(work, work%at_centre)
    end subroutine contract
 
-   !> Bounds the row sums of |1 - A J|, with the Jacobian J at hand.
+   !> Bounds the row sums of |1 - A J| for the last assembled Jacobian J of a block.
    pure subroutine find_off(work, off)
-      type(block_work_t), intent(in) :: work
+      type(block_work_t), intent(in) :: work   !< with J, A, and the row sums of the midpoints
       real(wp), intent(out) :: off(:)        !< (n) the bounds, without a unit
       real(wp) :: wide(size(work%r))
       integer :: k
@@ -226,16 +229,17 @@ contains
       off = (work%of_midpoints + off)*(1.0_wp + (16 + size(work%x))*rounding)
    end subroutine find_off
 
-   !> Finds a ball in which a block has exactly one solution, about its unknowns. The unknowns of the state and the
-   !> equations in `work` become those in this ball or a larger one.
+   !> Finds a ball about the unknowns of a block in which it has exactly one solution, by the argument of the module's
+   !> head. The unknowns of the state, and the equations in `work`, become those in this ball or a larger one.
    subroutine find_ball(b, numbers, i, balls, work, others, radius)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       integer, intent(in) :: i               !< number of the block
-      type(ball_state_t), intent(inout) :: balls   !< the state at which the block was contracted
-      type(block_work_t), intent(inout) :: work   !< its equations are no larger than work%open
-      !> If it is 0 or more, work%v becomes the effect of these errors on the equations.
-      real(wp), intent(in) :: others         !< bound of the errors of earlier blocks, rad or unit of the block
+      type(ball_state_t), intent(inout) :: balls   !< the state at which `contract` was called
+      type(block_work_t), intent(inout) :: work   !< by `contract`, with bounds of the equations in work%open
+      !> 0 or more: bound of the errors of earlier blocks, whose effect on the equations is the right-hand side for the
+      !> velocities; below 0: the balls of the state hold these errors.
+      real(wp), intent(in) :: others         !< rad or unit of the block
       real(wp), intent(out) :: radius        !< rad or unit of the block; -1: no ball is proved
       real(wp) :: eta, z1, z2, rate, centre(size(work%x))
       integer :: tries, k
@@ -251,6 +255,7 @@ contains
       do k = 1, size(work%x)
          centre(k) = balls%u(b%unknown(b%list(i)%first + k - 1))%value%radius
       end do
+
       do tries = 1, max_balls
          radius = radius_of(z1, z2, eta)
          if (radius < 0.0_wp) return
@@ -277,12 +282,12 @@ contains
       radius = -1.0_wp
    end subroutine find_ball
 
-   !> Subtracts the Jacobian times the rates or accelerations of a block from its right-hand side work%v.
+   !> Subtracts the Jacobian times the rates or accelerations of a block from its right-hand side, work%v.
    pure subroutine subtract_product(order, unknowns, own, work)
       integer, intent(in) :: order           !< 1: rates; 2: accelerations
       integer, intent(in) :: own(:)          !< (n) numbers of the unknowns of the block
-      type(unknown_t), intent(in) :: unknowns(0:)   !< (0:unknowns)
-      type(block_work_t), intent(inout) :: work
+      type(unknown_t), intent(in) :: unknowns(0:)   !< (0:unknowns) with rates and accelerations
+      type(block_work_t), intent(inout) :: work   !< with the Jacobian; v is changed
       type(ball_t) :: x
       integer :: k
 
@@ -293,15 +298,15 @@ contains
       end do
    end subroutine subtract_product
 
-   !> Computes |A|, with room for roundings, where A is about the inverse of a Jacobian J. If equations are redundant,
-   !> A is the inverse by least squares.
+   !> Computes |A|, with room for roundings, for an approximate inverse A of a Jacobian J, and bounds |1 - A J|. If
+   !> equations are redundant, A is an inverse by least squares.
    subroutine bound_inverse(rows, n, jacobian, a, off, exists)
       integer, intent(in) :: rows            !< number of equations
       integer, intent(in) :: n               !< number of unknowns
       real(wp), intent(in) :: jacobian(rows, n)   !< midpoints of J
       real(wp), intent(out) :: a(n, rows)    !< |A|
       real(wp), intent(out) :: off(n)        !< bounds of the row sums of |1 - A J|
-      logical, intent(out) :: exists         !< there is an inverse
+      logical, intent(out) :: exists         !< there is an inverse; otherwise the other results are not set
       real(wp), allocatable :: factors(:, :), work(:)
       real(wp) :: x(max(n, rows)), enlarged
       integer :: pivots(n), k, i, info
@@ -355,15 +360,15 @@ contains
       do k = 1, rows
          product = product + a(:, k)*vector(k)
       end do
-      ! The last term is for products that underflow; rest is exact.
+      ! The last term is for products that underflow; a vector of zeros is exact.
       if (any(vector > 0.0_wp)) product = product*(1.0_wp + (16 + rows)*rounding) + tiny(1.0_wp)
    end subroutine apply
 
-   !> Gives the radius of a ball that the map x - A F(x) maps into itself; -1 if there is none. The head of this file
-   !> has the inequality.
+   !> Gives the radius of a ball that the map x - A F(x) maps into itself, by the inequality of the module's head, in
+   !> rad or the unit of the block; -1 if there is none.
    pure real(wp) function radius_of(z1, z2, eta) result(r)
       real(wp), intent(in) :: z1             !< bound of |1 - A J| at the centre
-      real(wp), intent(in) :: z2             !< its change over the radius
+      real(wp), intent(in) :: z2             !< the change of this bound over the radius, 1/rad or 1/unit of the block
       real(wp), intent(in) :: eta            !< bound of |A| |F| at the centre, rad or unit of the block
       real(wp) :: root
 

@@ -6,14 +6,14 @@
 !>
 !>    |F| <= max |F_end| + h/4 max |F'_end| + h^2/16 |F'' - c|
 !>
-!> for any c, and for c = 0 at the middle of a ball that holds F'' (Peano's kernel of Hermite's interpolation, whose
+!> for any constant c: c is the middle of a ball that holds F'' (Peano's kernel of Hermite's interpolation, whose
 !> integral is at most 1/16). F and F' at the ends are of the size of rounding; F'' = J x'' - b by the equations of the
 !> accelerations, in balls that hold the cubics and their derivatives. The change of F with the errors of earlier blocks
 !> is the right-hand side of the velocities, if these are balls about 0 with the radii of the tubes.
 !>
-!> For each time there is exactly one solution in a ball about the curve, with a regular Jacobian: all these are one
-!> continuous path. Tubes of adjoining intervals have balls about one centre where they meet. One of the balls holds the
-!> other, and therefore their paths are one.
+!> For each time there is exactly one solution in a ball about the curve, with a regular Jacobian: all these solutions
+!> are one continuous path. At the time at which tubes of adjoining intervals meet, their balls have one centre. One of
+!> the balls holds the other, and therefore their paths are one.
 module tube_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
@@ -29,23 +29,24 @@ module tube_proof
 
    !> The tube, in the units of the blocks.
    type :: tube_t
-      integer :: block = 0                        !< the first that is not proved; 0: all are proved
-      real(wp), allocatable :: radius(:)          !< (0:unknowns)
+      integer :: block = 0                        !< number of the first block that is not proved; 0: all are proved
+      real(wp), allocatable :: radius(:)          !< (0:unknowns) of the balls about the curve, rad or unit of the block
       type(ball_state_t) :: curve                 !< holds the curves and, of blocks that are proved, their tubes
-      !> As `curve`, but rates are balls about 0: with radius(:), and with the distance of laws from the drives' cubics.
+      !> `curve` with other rates, which are balls about 0: of unknowns with radius(:), of drives with bounds of the
+      !> distance of their laws from their cubics.
       type(ball_state_t) :: balls
    end type tube_t
 
 contains
 
-   !> Proves the motion of the needed blocks between two positions. The proof ends at the first block that is not
-   !> proved.
+   !> Proves the motion of the needed blocks between two positions by one tube. The proof ends at the first block that
+   !> is not proved.
    subroutine prove_tube(numbers, b, path, from, to, tube)
-      type(ball_numbers_t), intent(in) :: numbers
+      type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
-      type(proved_position_t), intent(in) :: from, to   !< proved positions
-      type(tube_t), intent(inout) :: tube
+      type(proved_position_t), intent(in) :: from, to   !< proved positions at different times
+      type(tube_t), intent(inout) :: tube   !< of the structure; then with radii, or tube%block
       logical :: unbounded(0:size(path%laws))
       type(ball_t) :: c(0:2)
       real(wp) :: h, radius
@@ -53,7 +54,7 @@ contains
 
       h = to%t - from%t
       tube%radius = 0.0_wp
-      ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
+      ! No equation depends on unknowns of later blocks, but some hold them with factors that cancel: any value serves.
       tube%curve%u(:) = unknown_t()
       tube%balls%u(:) = unknown_t()
       call bound_drives()
@@ -74,7 +75,7 @@ contains
             end do
 
             if (block%explicit) then
-               ! The unknown is the sum of another one and a drive, and its cubic is the sum of their cubics.
+               ! The unknown is the sum of another unknown and a drive, and its cubic is the sum of their cubics.
                associate (row => b%rows(block%first_row))
                   radius = (end_residual(block%first_row) + tube%radius(row%other) &
                      + tube%balls%drive(1, row%drive)%radius)*room
@@ -98,8 +99,8 @@ contains
 
    contains
 
-      !> Bounds the distance of the laws of the drives from their cubics, by the range of their second derivatives. Laws
-      !> without a bound are `unbounded`.
+      !> Bounds the distance of the laws of the drives from their cubics, by the range of their second derivatives, as
+      !> rates of the drives in tube%balls. Laws without a bound are `unbounded`.
       subroutine bound_drives()
          type(bounds_t) :: law
          type(ball_t) :: c(0:2)
@@ -125,9 +126,10 @@ contains
          end do
       end subroutine bound_drives
 
-      !> Bounds the part of |F| by the residuals at both ends, by Hermite's interpolation.
+      !> Bounds the part of |F| that comes from the residuals at both ends, by Hermite's interpolation (module's head),
+      !> in the unit of the loop or rad.
       pure real(wp) function end_residual(row)
-         integer, intent(in) :: row          !< number of the equation
+         integer, intent(in) :: row          !< number of the row of the equation
 
          end_residual = (max(from%open(0, row), to%open(0, row)) &
             + 0.25_wp*abs(h)*max(from%open(1, row), to%open(1, row)))*room
@@ -154,10 +156,10 @@ contains
       end subroutine prove_block
    end subroutine prove_tube
 
-   !> Gives balls (0:2) that hold a cubic in an interval, and its first and second derivatives by time: the balls of the
-   !> control points, which bound a polynomial.
+   !> Gives balls (0:2) that hold a cubic in an interval of time, and its first and second derivatives. They hold the
+   !> control points of the polynomials (Bernstein), which bound these.
    pure function cubic(length, x0, x1) result(c)
-      real(wp), intent(in) :: length         !< of the interval, time
+      real(wp), intent(in) :: length         !< the length of the interval, not 0; below 0: back in time
       real(wp), intent(in) :: x0(0:1), x1(0:1)   !< value and rate of the cubic at its beginning and at its end
       type(ball_t) :: c(0:2)
       real(wp) :: first(3), second(2), inexact
@@ -170,11 +172,11 @@ contains
       c(2) = hull(second, 2.0_wp*inexact, length**2)
    end function cubic
 
-   !> Gives a ball that holds all of some numbers, divided by a divisor.
+   !> Gives a ball that holds several numbers, each divided by one divisor.
    pure type(ball_t) function hull(numbers, inexact, divisor)
-      real(wp), intent(in) :: numbers(:)     !< (any number)
-      real(wp), intent(in) :: inexact        !< bound of their errors
-      real(wp), intent(in) :: divisor        !< not 0
+      real(wp), intent(in) :: numbers(:)     !< (1 or more) in one unit
+      real(wp), intent(in) :: inexact        !< bound of their errors, in this unit
+      real(wp), intent(in) :: divisor        !< not 0, in any unit
 
       hull = ball_t(0.5_wp*(minval(numbers) + maxval(numbers))/divisor, (0.5_wp*(maxval(numbers) - minval(numbers)) + &
          inexact)/abs(divisor)*room)
