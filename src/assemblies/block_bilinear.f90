@@ -99,7 +99,7 @@ contains
       integer, intent(in) :: loop            !< the number of the loop, of kind loop_angles
       type(state_t), intent(in) :: s         !< with the drives and earlier blocks
       type(block_form_t), intent(in) :: form   !< with `turns`
-      type(bilinear_builder_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft   !< with the equations so far
       complex(wp) :: ratio
       integer :: less
 
@@ -127,7 +127,7 @@ contains
       integer, intent(in) :: loop            !< the number of the loop
       integer, intent(in) :: n               !< how many unknowns the block has
       type(state_t), intent(in) :: s         !< with the drives, earlier blocks, and given parts of loops
-      type(bilinear_builder_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft   !< with the equations so far
       type(projection_t) :: one
 
       allocate (one%l(n + 1))

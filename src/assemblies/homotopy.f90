@@ -80,7 +80,7 @@ contains
    !> half of the equations: at it their forms in x are zero, and the forms in y of the other half.
    subroutine make_start(group_size, start)
       integer, intent(in) :: group_size      !< p, unknowns of each group
-      type(path_start_t), intent(out) :: start
+      type(path_start_t), intent(out) :: start   !< the start
       complex(dp) :: a(0:group_size, 2*group_size), b(0:group_size, 2*group_size)
       integer :: seed, chosen(group_size), paths, j, k
 
@@ -154,7 +154,7 @@ contains
    !> Follows every path of a system from a start. If two paths come to one regular end, one of them has jumped to the
    !> other on the way: the second counts as failed.
    subroutine follow_all(bilinear, start, ends, near)
-      type(bilinear_t), intent(in) :: bilinear
+      type(bilinear_t), intent(in) :: bilinear   !< the system
       type(path_start_t), intent(in) :: start   !< for the system's p
       type(ends_t), intent(out) :: ends         !< the finite ends, and counts
       !> The points of the paths at t = t_near_end as a start, if all come so far; otherwise it stays.
@@ -209,7 +209,7 @@ contains
    !> Follows a path from t = t_near_end to its end, which may be finite, singular or at infinity. The point of a
    !> singular end, or of one at infinity, is the last point that was reached.
    subroutine follow_to_end(bilinear, paths, chart, start, ending, is_infinite, is_done)
-      type(bilinear_t), intent(in) :: bilinear
+      type(bilinear_t), intent(in) :: bilinear   !< the system
       type(paths_t), intent(inout) :: paths     !< of the system
       complex(dp), intent(in) :: chart(:, :)    !< (p, 2) of the start
       complex(dp), intent(in) :: start(:)       !< (2p) z at t = t_near_end
@@ -290,7 +290,7 @@ contains
    !> Follows a path between two values of t. A step is predicted by Runge and Kutta's rule and corrected by Newton's
    !> method; a step that fails is made shorter, down to the least.
    subroutine follow(paths, from, to, step, least, point, is_done)
-      type(paths_t), intent(inout) :: paths
+      type(paths_t), intent(inout) :: paths   !< of the system
       real(dp), intent(in) :: from, to       !< the two values of t
       real(dp), intent(inout) :: step        !< the first step, afterwards the step for going on, as parts of the way
       real(dp), intent(in) :: least          !< the least step, as a part of the way
@@ -343,7 +343,7 @@ contains
    !> Predicts z after a step by Runge and Kutta's rule of fourth order. The prediction fails if a tangent does not
    !> exist, or if z changes by more than its size.
    subroutine predict(paths, from, to, covered, step, point, tangent, next, is_done)
-      type(paths_t), intent(inout) :: paths
+      type(paths_t), intent(inout) :: paths   !< of the system
       real(dp), intent(in) :: from, to       !< the two values of t of the way
       real(dp), intent(in) :: covered        !< part of the way before the step
       real(dp), intent(in) :: step           !< part of the way
@@ -351,6 +351,7 @@ contains
       complex(dp), intent(in) :: tangent(:)  !< (2p) the derivative of z by t there
       complex(dp), intent(out) :: next(:)    !< (2p) z after the step; of no use if the prediction fails
       logical, intent(out) :: is_done        !< the prediction has not failed
+      !> The rule's stages: parts of the step at which tangents are taken, and the weights of the tangents.
       real(dp), parameter :: stage_places(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: stage_weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), slope(size(point), 1)
@@ -378,7 +379,7 @@ contains
    !> `max_prediction_error`, a later step is not at most half of the one before, or `max_corrections` steps are not
    !> enough.
    subroutine correct(paths, t, point, tangent, correction, is_done)
-      type(paths_t), intent(inout) :: paths
+      type(paths_t), intent(inout) :: paths   !< of the system
       real(dp), intent(in) :: t              !< the t of the point
       complex(dp), intent(inout) :: point(:) !< (2p) z; of no use if the correction fails
       complex(dp), intent(out) :: tangent(:) !< (2p) the derivative of z by t, before the last step
@@ -433,7 +434,7 @@ contains
    !> Finds the residual of the homotopy at a point, and its derivatives. Most calls have the t of the call before:
    !> `paths` keeps the coefficients.
    subroutine assemble(paths, t, point, a, residual, slope)
-      type(paths_t), intent(inout) :: paths
+      type(paths_t), intent(inout) :: paths   !< of the system
       real(dp), intent(in) :: t              !< the t of the point
       complex(dp), intent(in) :: point(:)    !< (2p) z
       complex(dp), intent(out) :: a(:, :)    !< (2p, 2p) the Jacobian by z

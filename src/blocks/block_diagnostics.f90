@@ -150,7 +150,7 @@ contains
    function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(history_t), intent(in) :: history   !< with the last motion accepted; without a motion there is no limit
       type(state_t), intent(in) :: s         !< with the rates of the drives
       real(wp), intent(in) :: t              !< the parameter of the path that could not be reached

@@ -96,7 +96,7 @@ contains
    subroutine get_ratios(b, x, path, is_lost, here, w, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       logical, intent(in) :: is_lost(:)      !< (blocks) it has no position, or no unique rates
       type(state_t), intent(in) :: here      !< the position
       type(workspace_t), intent(inout) :: w
@@ -164,7 +164,7 @@ contains
    subroutine get_driven_links(b, x, path, t, w, s, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: t              !< the parameter of the path, in the deck's unit of time
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s      !< its drives and the unknowns of explicit blocks are set

@@ -57,6 +57,7 @@ module block_solver
       type(nearby_t) :: near                      !< the Jacobian, if `a` holds the factors of a nearby one
       type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
    end type scratch_t
+   !> The workspace of the solver: the scratch, the matrix and its right-hand sides.
    type, extends(scratch_t) :: workspace_t
       real(wp), allocatable :: a(:)               !< the Jacobian of a block, then its factors, or those of a nearby one
       real(wp), allocatable :: r(:)               !< (2 rows) two right-hand sides, the first one residuals at first
@@ -159,7 +160,7 @@ contains
       logical, intent(in) :: moves                         !< their values are solved for
 
       type(block_t), intent(in) :: blocks(*)               !< (blocks)
-      type(block_numbers_t), intent(in) :: numbers(*)      !< (blocks)
+      type(block_numbers_t), intent(in) :: numbers(*)      !< (blocks)   !< of the block
       integer, intent(in) :: unknown(*)                    !< (unknowns) their numbers, block by block
       type(block_loop_t), intent(in) :: loops(*)           !< (loops)
       type(loop_numbers_t), intent(in) :: loop_numbers(*)  !< (loops)
@@ -171,7 +172,7 @@ contains
       type(row_numbers_t), intent(in) :: constants(*)      !< (rows)
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
       real(wp), intent(in) :: excursion                    !< of the drives off chords (rad, characteristic lengths)
-      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
+      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)   !< with the motion
 
       ! Scratch of the equations, then findings.
       type(vector_t), intent(inout) :: own(*)              !< (body vectors) rotated by angles of their block
@@ -181,7 +182,7 @@ contains
       logical, intent(inout) :: is_singular(*)             !< (blocks) without unique rates
       real(wp), intent(inout) :: a(*)                      !< room for the largest Jacobian
       real(wp), intent(inout) :: right_sides(*)            !< room for two right-hand sides
-      type(scratch_t), intent(inout) :: scratch
+      type(scratch_t), intent(inout) :: scratch   !< of the solver
       integer, intent(inout) :: k                          !< the index in the list of the block solved last
       real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
       type(solve_report_t), intent(inout) :: convergence    !< of all blocks so far
@@ -220,8 +221,8 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
-      type(block_t), intent(in) :: block
-      type(block_numbers_t), intent(in) :: numbers
+      type(block_t), intent(in) :: block   !< the block
+      type(block_numbers_t), intent(in) :: numbers   !< of the block
       logical, intent(in) :: moves                         !< its values are solved for; otherwise they are a position
 
       integer, intent(in) :: unknown(*)                    !< (n) numbers of its unknowns
@@ -235,7 +236,7 @@ contains
       type(row_numbers_t), intent(in) :: constants(*)      !< (rows of all blocks)
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
       real(wp), intent(in) :: excursion                    !< of the drives off chords (rad, characteristic lengths)
-      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
+      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)   !< with the motion
 
       ! Scratch of the equations, then findings.
       type(vector_t), intent(inout) :: own(*)              !< (body vectors) rotated by angles of the block
@@ -243,7 +244,7 @@ contains
       type(loop_state_t), intent(inout) :: now(*)          !< (loops of all blocks)
       real(wp), intent(inout) :: a(*)                      !< room for the Jacobian; then its factors
       real(wp), intent(inout) :: right_sides(block%shape%rows, 2)   !< residuals, then accelerations; velocities
-      type(scratch_t), intent(inout) :: scratch
+      type(scratch_t), intent(inout) :: scratch   !< of the solver
       type(jacobian_t), intent(inout) :: jacobian          !< stays without a position or an inverse, but for the sign
       logical, intent(inout) :: is_singular                !< it has no unique rates; stays if there is no position
       real(wp), intent(out) :: ratio                       !< Kantorovich ratio; 0 if nothing was corrected
@@ -454,7 +455,7 @@ contains
 
    !> Solves linear equations for another right-hand side from the factors.
    subroutine solve_next_side(shape, a, pivots, work, near, sparse, right_side)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< the layout of the matrix
       real(wp), intent(in) :: a(*)                         !< the factors
       integer, intent(in) :: pivots(*)                     !< (n) of the factors
       real(wp), intent(inout) :: work(*)                   !< scratch
@@ -509,7 +510,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i                             !< the number of the block
       real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
-      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)   !< with the motion
       real(wp), intent(in) :: left_over(b%list(i)%shape%rows, 2)   !< accelerations and rates, then their residuals
       real(wp), intent(in) :: coarse                       !< given part over own body vectors, 1 at least
       real(wp), intent(in) :: closing                      !< the closing tolerance (unit of the loop, rad)
@@ -532,7 +533,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
-      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)   !< with the motion
       real(wp) :: sizes(b%list(i)%shape%rows), size_of
       integer :: m, k
 

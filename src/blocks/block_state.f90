@@ -49,7 +49,7 @@ contains
 
    !> Puts the state at a parameter of the path of its drives, with value, rate and acceleration of each drive.
    pure subroutine set_drive_values(path, t, s)
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: t                      !< the parameter, in the deck's unit of time
       type(state_t), intent(inout) :: s              !< t and drive_value are set
       real(wp) :: f(3)

@@ -124,11 +124,11 @@ contains
    subroutine pass(b, x, path, history, w, s, requests, convergence, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(history_t), intent(inout) :: history              !< empty after a switch to another branch
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                      !< the motion found last; then on the branch requested
-      type(branch_requests_t), intent(inout) :: requests
+      type(branch_requests_t), intent(inout) :: requests   !< BRANCH cards, and change points passed
       type(solve_report_t), intent(inout) :: convergence      !< of that motion
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< one for each change point
       type(diagnostic_t) :: r

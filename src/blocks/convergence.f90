@@ -74,7 +74,7 @@ contains
 
    !> Tells whether a position was found.
    pure logical function is_solved(convergence)
-      type(solve_report_t), intent(in) :: convergence
+      type(solve_report_t), intent(in) :: convergence   !< of the iteration
 
       is_solved = convergence%ended == ended_converged .or. convergence%ended == ended_stalled
    end function is_solved
@@ -98,8 +98,9 @@ contains
 
    !> Gives the word, printed in the log, for the way in which an iteration ended.
    pure function ending(convergence) result(word)
-      type(solve_report_t), intent(in) :: convergence
+      type(solve_report_t), intent(in) :: convergence   !< of the iteration
       character(9) :: word
+      !> (ended_converged:ended_elsewhere) The words.
       character(9), parameter :: words(8) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
          'OPEN', 'UNSOUGHT', 'ELSEWHERE']
 

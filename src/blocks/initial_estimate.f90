@@ -255,7 +255,7 @@ contains
    pure real(wp) function least(coefficients, start) result(u)
       real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the module's head, squared lengths
       real(wp), intent(in) :: start             !< rad: the angle from which the search begins
-      real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)
+      real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)   !< rad: between the angles at which minima are sought
       real(wp) :: lowest, slope, lipschitz
       integer :: i
 

@@ -84,7 +84,7 @@ contains
 
    !> Finds position, velocity and acceleration of the first n links of a chain, and the positions of ground links.
    pure subroutine move_links(chain, n, s, q, finite)
-      type(link_order_t), intent(in) :: chain
+      type(link_order_t), intent(in) :: chain   !< of the mechanism
       integer, intent(in) :: n               !< how many links: chain%wanted, or all
       type(state_t), intent(in) :: s         !< with the motion of their unknowns
       type(motion_t), intent(inout) :: q     !< (links) in the deck's units; x and y from the chain's origin
@@ -105,7 +105,7 @@ contains
       integer, intent(in) :: grounds                        !< how many ground links there are
       integer, intent(in) :: ground(*)                      !< (ground links) their numbers
       real(wp), intent(in) :: ground_positions(3, *)        !< (3, ground links) x, y, phi, in the deck's unit and rad
-      type(unknown_t), intent(in) :: unknowns(0:*)          !< (0:unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:*)          !< (0:unknowns)   !< with the motion
       real(wp), intent(inout) :: positions(3, *)            !< (3, links) x, y, phi, in the deck's unit and rad
       real(wp), intent(inout) :: velocities(3, *)           !< (3, links) by time
       real(wp), intent(inout) :: accelerations(3, *)        !< (3, links) by time squared
@@ -140,7 +140,7 @@ contains
    !> Finds how much of the motion of each link is known, and the flag that tells why no more, from the unknowns by
    !> which the link and its parents move. Links that are not wanted count as known.
    subroutine flag_links(chain, missing, found)
-      type(link_order_t), intent(in) :: chain
+      type(link_order_t), intent(in) :: chain   !< of the mechanism
       integer, intent(in) :: missing(0:)     !< (0:unknowns) missing_nothing, ...
       type(motion_t), intent(inout) :: found   !< of all links; link_known and link_flag are set
       integer :: of_link(0:size(found%position, 2)), k

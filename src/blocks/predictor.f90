@@ -47,6 +47,7 @@ module predictor
 
    !> One unknown in the last three motions: the latest of its values; rates and accelerations by `slot` of `history_t`.
    type :: unknown_history_t
+      !> In rad or the unit of the loop, by time and its square.
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
    end type unknown_history_t
 
@@ -81,7 +82,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s                    !< the motion
-      type(history_t), intent(inout) :: history
+      type(history_t), intent(inout) :: history   !< the motions before
       real(wp) :: uncertain, least
       integer :: k
 
@@ -120,7 +121,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in), contiguous :: list(:)        !< (any number) numbers of the blocks that were solved
-      type(history_t), intent(in) :: history
+      type(history_t), intent(in) :: history   !< the motions before
       type(state_t), intent(inout) :: s                 !< the motion; `crossed` of the blocks is set
       !> Of the motion: determinant_signs_kept becomes false if a block has crossed; amplification is raised.
       type(solve_report_t), intent(inout) :: convergence
@@ -167,8 +168,8 @@ contains
    subroutine recall(b, x, path, history, estimated, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
-      type(history_t), intent(in) :: history
+      type(drive_path_t), intent(in) :: path   !< of the drives
+      type(history_t), intent(in) :: history   !< the motions before
       real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad or unit of the loop
       type(state_t), intent(inout) :: s                 !< if the history is empty, with the drives
       integer :: k
@@ -198,7 +199,7 @@ contains
 
    !> Records a motion as the latest of a history, which forgets the motion before the last two.
    pure subroutine remember(history, t, unknown, uncertain)
-      type(history_t), intent(inout) :: history
+      type(history_t), intent(inout) :: history   !< the motions before
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
       type(unknown_t), intent(in) :: unknown(0:*)       !< (0:unknowns) of the motion
       real(wp), intent(in) :: uncertain                 !< uncertainty of its accelerations over velocities, 1/time
@@ -221,7 +222,7 @@ contains
    !> Puts the latest motion of a history at a parameter of another path, and empties the history: rates on the path
    !> before predict nothing on the other path.
    pure subroutine begin_at(history, t)
-      type(history_t), intent(inout) :: history
+      type(history_t), intent(inout) :: history   !< the motions before
       real(wp), intent(in) :: t                         !< the parameter, in the deck's unit of time
 
       history%t(0) = t
@@ -322,7 +323,7 @@ contains
    !> Tells whether the formula for three motions serves: the history has three motions at equal steps, the next step is
    !> equal, and no order is given.
    pure logical function has_equal_steps(history, step)
-      type(history_t), intent(in) :: history
+      type(history_t), intent(in) :: history   !< the motions before
       real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
 
       has_equal_steps = history%filled == 3 .and. history%order == own_predictor

@@ -86,7 +86,7 @@ contains
 
    !> Makes the analysis of a mechanism ready for its first instant.
    subroutine make_analysis(analysis, m)
-      type(analysis_t), intent(out) :: analysis
+      type(analysis_t), intent(out) :: analysis   !< of the mechanism
       type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
       type(structure_t) :: structure
 
@@ -96,7 +96,7 @@ contains
 
    !> Makes the analysis of a mechanism whose structure is known ready for its first instant.
    subroutine analyze_structure(analysis, m, structure)
-      type(analysis_t), intent(out) :: analysis
+      type(analysis_t), intent(out) :: analysis   !< of the mechanism
       type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
       type(structure_t), intent(inout) :: structure        !< of `m`; blocks and geometry are moved away
 
@@ -127,7 +127,7 @@ contains
 
    !> Solves for an instant, from the last instant on. Links that no request needs may be left out.
    subroutine advance(analysis, t, found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
       type(motion_t), intent(inout) :: found               !< (links) in the deck's units; flagged if it is not found
       type(step_record_t) :: step
@@ -160,7 +160,7 @@ contains
 
    !> Continues the motion to an instant, by the way that belongs to the phase (module's head).
    subroutine reach(analysis, t, step, list)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
       type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
       !> Not allocated; then the change points on which the motion stands at `t`, or from which it has returned.
@@ -184,7 +184,7 @@ contains
    !> Finds the first motion. From a singular first position more than one motion begins. This motion begins close to
    !> that position, in the nearest assembly: at an instant further away another assembly may be nearest.
    subroutine begin(analysis, t, step, list)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
       type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
       type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< then the change points on which the motion stands
@@ -204,7 +204,7 @@ contains
    !> Follows the motion from a singular position on which it stands. Back in time it is the motion before, unless a
    !> BRANCH card requests the other branch.
    subroutine leave_position(analysis, t, step, list)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< time to which the motion goes, in the deck's unit
       type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
       !> Then the change points on which the motion stands, or from which it has returned.
@@ -228,7 +228,7 @@ contains
    !> Stays on a singular position, since no drive moves. Blocks without velocities keep their position; velocities and
    !> accelerations of the other blocks are solved for.
    subroutine rest(analysis, t, step)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< time until which no drive moves, in the deck's unit
       type(step_record_t), intent(inout) :: step           !< its ending becomes step_rests
 
@@ -241,7 +241,7 @@ contains
    !> that was evaluated before: of many times in a row each costs a short step. The analysis stays at this time until
    !> `restore_instant`.
    subroutine evaluate_at(analysis, t, found, is_found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time, in the deck's unit
       type(motion_t), intent(inout) :: found               !< (links) in the deck's units; of no use if not found
       logical, intent(out) :: is_found                     !< it has position, velocities and accelerations
@@ -271,7 +271,7 @@ contains
 
    !> Puts the analysis back at the last instant, if `evaluate_at` has left it.
    subroutine restore_instant(analysis)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
 
       if (.not. analysis%is_left) return
       call restore(analysis%continuation_t, analysis%left)
@@ -282,7 +282,7 @@ contains
    !> Gives the motion at the end of a step, with certificate and remarks. A regular motion is followed from there on;
    !> from a singular position the motion before stays the one that is followed.
    subroutine arrive(analysis, step, list, found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       type(step_record_t), intent(inout) :: step           !< that has come to the instant
       type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< its change points; not allocated: none
       type(motion_t), intent(inout) :: found               !< at the time found%t; (links) in the deck's units
@@ -362,7 +362,7 @@ contains
    !> Adds the remarks about the first position, or about the first motion after positions without a motion. A motion
    !> that is already followed began near a singular position and gets no remark about the deck's estimate.
    subroutine tell_first(analysis, was, found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       integer, intent(in) :: was                           !< the phase before: not_begun or at_start
       type(motion_t), intent(inout) :: found               !< remarks are added
 
@@ -379,7 +379,7 @@ contains
    !> contradict one another: at `near_limit_part` of the step beyond the last motion if no substep could be made from
    !> there, otherwise at the instant itself.
    subroutine stop_at(analysis, t, step, found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< time of the instant, in the deck's unit
       type(step_record_t), intent(in) :: step              !< that has not come to the instant
       type(motion_t), intent(inout) :: found               !< (links) flagged; only links that drives move are known
@@ -443,7 +443,7 @@ contains
    !> Leaves out an instant beyond a limit: no position is solved for. The first of such instants gets the remark about
    !> the limit, each later one the remark that it lies beyond.
    subroutine skip_instant(analysis, t, found)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
       type(motion_t), intent(inout) :: found               !< (links) flagged; only links that drives move are known
       integer :: side
@@ -536,7 +536,7 @@ contains
    !> Gives the largest closure error of redundant equations so far, in units of their loops or rad; -1 without
    !> redundant equations.
    pure real(wp) function redundancy_error(analysis)
-      type(analysis_t), intent(in) :: analysis
+      type(analysis_t), intent(in) :: analysis   !< of the mechanism
 
       redundancy_error = -1.0_wp
       if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error

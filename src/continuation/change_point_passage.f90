@@ -29,7 +29,7 @@ contains
    !> cards, the motion is then followed on the branch that they select, from shortly after that instant. If it cannot
    !> be followed to there, it stays where it was.
    subroutine leave(continuation, last, t, blocks, list)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: last               !< time of the last instant, in the deck's unit
       real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit
       integer, intent(in) :: blocks(:)           !< numbers of the blocks that are singular there
@@ -72,7 +72,7 @@ contains
 
    !> Follows the motion to a time: by time or, if that fails, by the value of a drive.
    subroutine follow(continuation, t, step, list)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t                  !< the time, in the deck's unit
       type(step_record_t), intent(inout) :: step !< a new record; then how the step ended
       !> Its change points, allocated if the step by value ends at a singular position.
@@ -87,7 +87,7 @@ contains
    !> comes ever closer to the singular position and never across. If the step by value fails too, or several drives
    !> move, all stays.
    subroutine go_by_value(continuation, t, step, list)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit
       type(step_record_t), intent(inout) :: step !< of the step by time; then step_there, or step_stands
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< change points at `t`; not allocated: none
@@ -172,7 +172,7 @@ contains
    !> Puts the motion that is followed at another parameter of its path, where the drives have the values of the last
    !> position, and solves for its rates by this parameter.
    subroutine resume_motion(continuation, parameter, step)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: parameter          !< of the path, in the deck's unit of time
       type(step_record_t), intent(inout) :: step !< step_there: the motion goes on; step_failed: it does not
 

@@ -125,7 +125,7 @@ contains
 
    !> Makes the continuation of a mechanism ready for its first instant.
    subroutine begin_continuation(continuation, m)
-      type(continuation_t), intent(out) :: continuation
+      type(continuation_t), intent(out) :: continuation   !< of the mechanism
       type(mechanism_t), intent(in) :: m
       type(structure_t) :: structure
 
@@ -135,7 +135,7 @@ contains
 
    !> Makes the continuation of a mechanism whose structure is known ready for its first instant.
    subroutine follow_structure(continuation, m, structure)
-      type(continuation_t), intent(out) :: continuation
+      type(continuation_t), intent(out) :: continuation   !< of the mechanism
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout) :: structure   !< of `m`; its blocks and its geometry are moved away
 
@@ -223,7 +223,7 @@ contains
    !> Follows the motion to a parameter of its path in substeps, or finds the first motion there. All substeps but the
    !> last are accepted; if the parameter is not reached, the motion stays where the last of them has come.
    subroutine continue_to(continuation, t, step)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t              !< the parameter, in the deck's unit of time
       type(step_record_t), intent(inout) :: step   !< a new record; then how the step ended
       real(wp) :: substep, here, longest, allowed, shortest
@@ -276,7 +276,7 @@ contains
    !> its Kantorovich ratio are small, cylinders keep their bounds, and determinants keep their signs but for change
    !> points.
    subroutine try_substep(continuation, t, step, accepted)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t              !< parameter of the path, in the deck's unit of time
       type(step_record_t), intent(inout) :: step   !< certificate and change points are added
       logical, intent(out) :: accepted       !< the motion is the continuation, or the first motion
@@ -306,7 +306,7 @@ contains
    !> Finds the lengths (0:2, cylinders) of cylinders in the last accepted motion, with their derivatives, in the deck's
    !> units.
    function lengths_followed(continuation) result(lengths)
-      type(continuation_t), intent(in) :: continuation
+      type(continuation_t), intent(in) :: continuation   !< of the mechanism
       real(wp) :: lengths(0:2, size(continuation%geometry%cylinders))
       type(state_t) :: s
 
@@ -416,7 +416,7 @@ contains
 
    !> Counts the change points that were passed in a step.
    pure integer function passed_of(step) result(passed)
-      type(step_record_t), intent(in) :: step
+      type(step_record_t), intent(in) :: step   !< the step
 
       passed = 0
       if (allocated(step%passed)) passed = size(step%passed)
@@ -424,7 +424,7 @@ contains
 
    !> Makes the motion found last the motion that is followed.
    subroutine accept_substep(continuation, t)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t              !< parameter of the path of that motion, in the deck's unit of time
 
       call accept(continuation%blocks, continuation%geometry, continuation%state, continuation%history)
@@ -436,7 +436,7 @@ contains
    !> Reason: an instant without a motion shall not change later instants, and from close to a dead point no step back
    !> would be small enough.
    subroutine revert(continuation, step)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       type(step_record_t), intent(in) :: step   !< the step that is taken back
 
       if (step%tries < 2) return
@@ -455,7 +455,7 @@ contains
 
    !> Puts a continuation back into an earlier state, motion found last included. A later step can revert to this state.
    subroutine restore(continuation, place)
-      type(continuation_t), intent(inout) :: continuation
+      type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       type(continuation_state_t), intent(in) :: place   !< the earlier state
 
       continuation%continuation_state_t = place

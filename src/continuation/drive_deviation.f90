@@ -71,8 +71,8 @@ contains
    !> Shortens a substep until no drive changes by more than `largest_predicted_change` nor leaves its chord by more
    !> than `max_deviation`.
    pure subroutine limit_substep(deviation, path, t, substep, allowed, away)
-      type(drive_deviation_t), intent(in) :: deviation
-      type(drive_path_t), intent(in) :: path
+      type(drive_deviation_t), intent(in) :: deviation   !< bounds of the drives
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: t              !< the parameter of the path from which the substep goes
       real(wp), intent(in) :: substep        !< the wanted substep, in the unit of the parameter
       real(wp), intent(out) :: allowed       !< the allowed substep; too short to change `t`: none is allowed
@@ -101,7 +101,7 @@ contains
 
    !> Finds whether the drives allow all steps of a given length between the instants.
    pure subroutine judge_step(deviation, step, away, is_plain)
-      type(drive_deviation_t), intent(in) :: deviation
+      type(drive_deviation_t), intent(in) :: deviation   !< bounds of the drives
       real(wp), intent(in) :: step           !< the length of the step, in the deck's unit of time
       real(wp), intent(out) :: away          !< bound of the drives' excursion in it; 0 if there is no bound
       logical, intent(out) :: is_plain       !< the drives allow such steps
@@ -117,8 +117,8 @@ contains
    !> rules of the module's head. A chord of length h is off its curve by h^2/8 times the second derivative at most. If
    !> a drive has no bound, both results are huge.
    pure subroutine examine(deviation, path, t1, t2, change, away)
-      type(drive_deviation_t), intent(in) :: deviation
-      type(drive_path_t), intent(in) :: path
+      type(drive_deviation_t), intent(in) :: deviation   !< bounds of the drives
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: t1, t2         !< the parameters, in either order, in the deck's unit of time
       real(wp), intent(out) :: change        !< largest change from the value at `t1`, in rad or characteristic lengths
       real(wp), intent(out) :: away          !< largest excursion, in rad or characteristic lengths
@@ -156,8 +156,8 @@ contains
 
    !> Tells whether two parameters are times, and lie between the earliest and the latest instant.
    pure logical function is_within(deviation, path, t1, t2)
-      type(drive_deviation_t), intent(in) :: deviation
-      type(drive_path_t), intent(in) :: path
+      type(drive_deviation_t), intent(in) :: deviation   !< bounds of the drives
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: t1, t2         !< the parameters, in either order, in the deck's unit of time
 
       is_within = min(t1, t2) >= deviation%first .and. max(t1, t2) <= deviation%last .and. .not. allocated(path%leg)

@@ -37,7 +37,7 @@ contains
 
    !> Finds the residuals of all closure equations (14), by (7) to (10) of the pairs.
    pure subroutine residual(system, configuration, driven, residuals)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
       real(wp), intent(out) :: residuals(:)  !< (n) in the system's unit of length or rad
@@ -74,7 +74,7 @@ contains
    !> Finds the Jacobian of the residuals. If the configuration is in the frozen form, the result is the matrix A of
    !> (20) instead.
    pure subroutine jacobian(system, configuration, a)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(out) :: a(:, :)       !< (n, n) in the system's unit of length and rad
       real(wp) :: coefficients(3)
@@ -124,7 +124,7 @@ contains
    !> Finds the acceleration remainder gamma of (22): the part of the second derivative of the residuals with respect to
    !> time in addition to J a, with the Jacobian J and the accelerations a.
    pure subroutine remainder(system, configuration, rates, gamma)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(in) :: configuration   !< of the system, not frozen
       real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
       real(wp), intent(out) :: gamma(:)      !< (n) in the system's unit of length or rad, per unit of time squared
@@ -153,8 +153,8 @@ contains
    !> Finds value, rate and acceleration of all drives, in the system's unit and from its origin, at a parameter of
    !> their path.
    pure subroutine find_drive_values(system, path, parameter, values)
-      type(system_t), intent(in) :: system
-      type(drive_path_t), intent(in) :: path
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp), intent(out) :: values(:, :)  !< (3, drives) in the system's unit of length or rad, by the parameter
       integer :: i
@@ -177,7 +177,7 @@ contains
 
    !> Adds coefficients to a row of the Jacobian, at the columns of the two links of a pair.
    pure subroutine place_both(system, a, row, k, coefficients)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
       integer, intent(in) :: row             !< the number of the row
       integer, intent(in) :: k               !< the number of the pair
@@ -189,7 +189,7 @@ contains
 
    !> Adds coefficients to a row of the Jacobian, at the columns of a link; a ground link has none.
    pure subroutine place(system, a, row, link, coefficients)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
       integer, intent(in) :: row             !< the number of the row
       integer, intent(in) :: link            !< the number of the link
@@ -202,8 +202,8 @@ contains
 
    !> Gives the vector P - Q (2) of a pair, in the system's unit of length.
    pure function closure_error(system, configuration, k) result(d)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k   !< the number of the pair
       real(wp) :: d(2)
 
@@ -215,8 +215,8 @@ contains
 
    !> Gives the normal n (2) of the guide of a prismatic pair, a unit vector in the fixed axes.
    pure function normal(system, configuration, k) result(n)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k   !< the number of the pair
       real(wp) :: n(2)
 
@@ -225,8 +225,8 @@ contains
 
    !> Gives -e (2) for the direction e of the guide of a prismatic pair, in the fixed axes: the slide is (P - Q) . (-e).
    pure function along(system, configuration, k) result(f)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k   !< the number of the pair
       real(wp) :: f(2)
 
@@ -238,8 +238,8 @@ contains
    !> with h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and
    !> y columns only, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(system, configuration, k, direction, psi, zeros) result(row)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k               !< the number of the pair
       real(wp), intent(in) :: direction(2)   !< f, the unit vector on which P - Q is projected
       real(wp), intent(in) :: psi            !< rad: the angle of `direction`
@@ -262,8 +262,8 @@ contains
    !> Gives the acceleration remainder of the projection (d . f)'' of a prismatic pair, in the system's unit of length
    !> per unit of time squared, by the formulas of the module's head.
    pure real(wp) function projection_remainder(system, configuration, rates, k, direction) result(gamma)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
       real(wp), intent(in) :: direction(2)   !< f, the unit vector on which P - Q is projected
       integer, intent(in) :: k               !< the number of the pair
@@ -283,8 +283,8 @@ contains
    !> Gives the part (2) of the second derivative of P - Q of a pair that has no accelerations, -phi_i'^2 u + phi_j'^2
    !> w, in the system's unit of length per unit of time squared.
    pure function turning_part(system, configuration, rates, k) result(gamma)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
       integer, intent(in) :: k               !< the number of the pair
       real(wp) :: gamma(2)

@@ -94,7 +94,7 @@ contains
    !> Finds directions, body vectors and slopes of a configuration from the coordinates of its links, slopes in the
    !> frozen form if the configuration has that. It takes one sine and one cosine a link.
    pure subroutine set_configuration(system, configuration)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(inout) :: configuration   !< of the system, with q, frozen and zeros
       integer :: i
 
@@ -114,7 +114,7 @@ contains
    !> Puts a configuration into the frozen form of (16). Its angles are counted from the zeros nearest to their present
    !> values.
    pure subroutine choose_references(system, configuration)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(inout) :: configuration   !< of the system, with directions and body vectors
       integer :: i
 
@@ -130,7 +130,7 @@ contains
 
    !> Adds a change of the unknowns to coordinates of all links, or rates to rates; ground links stay.
    pure subroutine add_to_links(system, change, places)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(in) :: change(:)      !< (n) in the system's unit of length and rad, or per unit of time
       real(wp), intent(inout) :: places(:, :)   !< (3, links) x, y, phi or their rates, in these units
       integer :: i
@@ -142,8 +142,8 @@ contains
 
    !> Gives the angle of the normal of a prismatic pair's guide at a configuration, in rad.
    pure real(wp) function normal_angle(system, configuration, k)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k   !< the number of the pair
 
       normal_angle = configuration%q(3, system%link_of(system%pairs(k)%point_i)) + system%pairs(k)%alpha + pi/2.0_wp
@@ -152,8 +152,8 @@ contains
    !> Gives the angle of the body vector to a point at a configuration, in rad; of a point at its link's origin the
    !> link's angle.
    pure real(wp) function body_vector_angle(system, configuration, i)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: i   !< the number of the point
 
       body_vector_angle = configuration%q(3, system%link_of(i)) + atan2(system%offset(2, i), system%offset(1, i))

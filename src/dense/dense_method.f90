@@ -51,7 +51,7 @@ contains
 
    !> Makes the closure equations ready for the instants of a mechanism.
    subroutine make_dense(dense, m)
-      type(dense_t), intent(out) :: dense
+      type(dense_t), intent(out) :: dense   !< of the mechanism
       type(mechanism_t), intent(in) :: m          !< with as many equations as unknowns
 
       dense%system = new_system(m)
@@ -66,10 +66,10 @@ contains
    !> Solves for the motion of all links at a time at which the blocks have found a motion. If no initial guess leads to
    !> the position of the blocks, `found` has only the blocks' motion of the links that requests need.
    subroutine solve_all_links(dense, b, x, path, estimated, history, s, found, convergence)
-      type(dense_t), intent(inout) :: dense
+      type(dense_t), intent(inout) :: dense   !< of the mechanism
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) the initial guess of the deck, rad or unit of the loop
       type(history_t), intent(in) :: history      !< the motions before; empty: the guess of the deck is the first
       type(state_t), intent(in) :: s              !< the motion that the blocks have found

@@ -47,7 +47,7 @@ contains
    !> position or, by Newton's method, to the iterate one step of the tolerance's size before. Otherwise they are the
    !> factors of the last matrix.
    subroutine solve_position(system, driven, tolerance, is_matrix, configuration, factors, convergence)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
       real(wp), intent(in) :: tolerance      !< over the size of the coordinates; 0: the limit of rounding
       logical, intent(in) :: is_matrix       !< by the iteration of 1987; otherwise by Newton's method

@@ -42,7 +42,7 @@ contains
 
    !> Finds the coordinates of a system. The forms of slides are 0 until `measure_slides`.
    function new_coordinates(system) result(c)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(coordinates_t) :: c
       logical :: is_guided(size(system%pairs))
       integer :: group(size(system%column)), link_i(size(system%pairs)), link_j(size(system%pairs)), link, k
@@ -69,7 +69,7 @@ contains
 
    !> Sets the forms of the slides of coordinates, in their units W at a configuration.
    pure subroutine measure_slides(system, configuration, coordinates)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(in) :: configuration   !< of the system
       type(coordinates_t), intent(inout) :: coordinates   !< of the system
       integer :: k, axis
@@ -92,8 +92,8 @@ contains
    !> Gives the distance |x_i - x_j| of the origins of a pair's links at a configuration, in the system's unit of
    !> length.
    pure real(wp) function slide_length(system, configuration, k)
-      type(system_t), intent(in) :: system
-      type(configuration_t), intent(in) :: configuration
+      type(system_t), intent(in) :: system   !< the closure equations
+      type(configuration_t), intent(in) :: configuration   !< of the system
       integer, intent(in) :: k   !< the number of the pair
 
       slide_length = norm2(configuration%q(:2, system%link_of(system%pairs(k)%point_i)) &
@@ -111,7 +111,7 @@ contains
    !> Gives the largest coordinate from the values of the forms; the two forms of a slide are one vector. 0 without
    !> forms.
    pure real(wp) function largest(coordinates, values)
-      type(coordinates_t), intent(in) :: coordinates
+      type(coordinates_t), intent(in) :: coordinates   !< of the system
       real(wp), intent(in) :: values(:)      !< (forms) 0 or more, in rad or in units W
 
       largest = maxval([0.0_wp, values(:coordinates%angles), hypot(values(coordinates%angles + 1::2), &
@@ -142,7 +142,7 @@ contains
    !> the module's head, in the system's unit of length. The two rows of a revolute pair have one bound, for their
    !> vector.
    pure function jacobian_lipschitz(system, coordinates, configuration) result(bound)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(coordinates_t), intent(in) :: coordinates   !< of the system
       type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp) :: bound(2*size(system%pairs) + size(system%drives))
@@ -175,7 +175,7 @@ contains
    !> Gives K of the module's head at a configuration: no other root is within 2/K, in the coordinates of `distance`.
    !> The factored matrix has the rows of the system first; any other rows are linear.
    pure real(wp) function kantorovich(system, coordinates, columns, configuration) result(k)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(coordinates_t), intent(in) :: coordinates   !< with slides measured at the configuration
       type(configuration_t), intent(in) :: configuration   !< of the system
       real(wp), intent(in) :: columns(:, :)          !< (n, forms or more) g . J^-1, by `forms_by_inverse`
@@ -199,7 +199,7 @@ contains
 
    !> Gives the change D of J^-1 J at a configuration along a direction, by the module's head.
    pure real(wp) function change_along(system, coordinates, columns, configuration, along) result(change)
-      type(system_t), intent(in) :: system
+      type(system_t), intent(in) :: system   !< the closure equations
       type(coordinates_t), intent(in) :: coordinates   !< with slides measured at the configuration
       real(wp), intent(in) :: columns(:, :)  !< (n, forms or more) g . J^-1, by `forms_by_inverse`
       type(configuration_t), intent(in) :: configuration   !< of the system

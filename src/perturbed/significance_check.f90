@@ -21,6 +21,7 @@ module significance_check
    !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times the requested number. Below this many
    !> roundings, and with no number above `safe_size` characteristic sizes, all digits of a table are right.
    real(wp), parameter :: max_amplification = 1.0e4_wp*part_of_real64
+   !> Numbers above this many characteristic sizes count as amplified without limit.
    real(wp), parameter :: safe_size = 1.0e4_wp
    !> rad: angles up to `usual_angle` count as any number does. Of larger angles only their rounding grows, not the
    !> terms of their motion. An angle times its amplification is safe up to `safe_angle`: a digit of a table is worth

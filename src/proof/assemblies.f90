@@ -70,7 +70,7 @@ contains
    subroutine find_assemblies(m, t, assemblies)
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
       real(wp), intent(in) :: t              !< time, in the deck's unit
-      type(assemblies_t), intent(out) :: assemblies
+      type(assemblies_t), intent(out) :: assemblies   !< all that were found
       type(continuation_t) :: f
       type(assembly_block_t) :: one
       integer :: i, k, places(2, size(m%links))
@@ -103,7 +103,7 @@ contains
    subroutine find_nearest(m, t, assemblies)
       type(mechanism_t), intent(inout) :: m  !< one independent mechanism; the estimates of its links may change
       real(wp), intent(in) :: t              !< time, in the deck's unit
-      type(assemblies_t), intent(out) :: assemblies
+      type(assemblies_t), intent(out) :: assemblies   !< all that were found
       type(continuation_t) :: f
       type(motion_t) :: q
       real(wp) :: apart, nearest

@@ -68,7 +68,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(state_t), intent(in) :: s         !< the motion of the unknowns
       type(motion_t), intent(in) :: q        !< the motion of all links
       logical, intent(in) :: bounded         !< with bounds of the motion of links; otherwise positions, for the step
@@ -123,10 +123,10 @@ contains
       type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(state_t), intent(in) :: s         !< the computed motion at `to`
       type(proved_position_t), intent(in) :: from, to   !< the proved positions
-      type(step_proof_t), intent(out) :: proof
+      type(step_proof_t), intent(out) :: proof   !< of the step
       type(tube_t) :: tube
       type(state_t), allocatable :: other               ! few steps need it
       type(workspace_t) :: w

@@ -79,7 +79,7 @@ contains
    subroutine prove_position(numbers, b, path, s, order, placed, failed)
       type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(state_t), intent(in) :: s         !< the computed motion, with time and drives
       integer, intent(in) :: order           !< 0: position; 2: velocities and accelerations as well
       type(proved_position_t), intent(inout) :: placed   !< the proof, as far as it goes

@@ -44,7 +44,7 @@ contains
    subroutine prove_tube(numbers, b, path, from, to, tube)
       type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
-      type(drive_path_t), intent(in) :: path
+      type(drive_path_t), intent(in) :: path   !< of the drives
       type(proved_position_t), intent(in) :: from, to   !< proved positions at different times
       type(tube_t), intent(inout) :: tube   !< of the structure; then with radii, or tube%block
       logical :: unbounded(0:size(path%laws))

@@ -30,7 +30,7 @@ contains
    !> and cylinders of the geometry are not set. Time and memory are proportional to its links, pairs and drives.
    subroutine make_structure(m, structure)
       type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(out) :: structure
+      type(structure_t), intent(out) :: structure   !< of `m`
       type(spanning_tree_t) :: t
       type(equations_t) :: e
 
@@ -51,7 +51,7 @@ contains
    !> Divides equations into blocks, without numbers. If an unknown has no equation, b%solvable is false, there are no
    !> blocks, and b%loose lists the unknowns that may be free.
    function new_blocks(tree, equations) result(b)
-      type(spanning_tree_t), intent(in) :: tree
+      type(spanning_tree_t), intent(in) :: tree   !< of the mechanism
       type(equations_t), intent(in) :: equations   !< on this tree, with `has_vector` and `counts`
       type(blocks_t) :: b
       type(incidence_t) :: g
@@ -166,7 +166,7 @@ contains
       !> Adds the row of an equation to the block that is being filled, in a loop of its own unless the other component
       !> of its vector loop already has a loop in the block.
       subroutine add_row(equation, row, first_loop)
-         type(equation_t), intent(in) :: equation
+         type(equation_t), intent(in) :: equation   !< the equation
          integer, intent(in) :: row          !< the number of the row in the block
          integer, intent(in) :: first_loop   !< the first loop of the block, among all loops
 
@@ -288,7 +288,7 @@ contains
 
       !> Finds the addresses of all entries in the Jacobian of a block, row by row.
       subroutine place_entries(block)
-         type(block_t), intent(in) :: block
+         type(block_t), intent(in) :: block   !< the block
          integer :: m, k, side, row
 
          do m = block%first_loop, block%last_loop
@@ -334,7 +334,7 @@ contains
 
    !> Tells whether a Jacobian is square and has so many rows that it would be best sparse with few entries.
    elemental logical function may_be_sparse(shape)
-      type(matrix_layout_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape   !< the layout of the matrix
 
       may_be_sparse = shape%rows == shape%n .and. is_sparse_better(shape%n, 0)
    end function may_be_sparse

@@ -113,9 +113,9 @@ module blocks
       real(wp) :: span = 1.0_wp                   !< the characteristic length, in the deck's unit
       real(wp) :: closing = 0.0_wp                !< closing tolerance of redundant equations (unit of the loop, rad)
       type(equation_numbers_t) :: equations       !< their unit of length: the largest power of two not above `span`
-      type(block_numbers_t), allocatable :: blocks(:)
-      type(row_numbers_t), allocatable :: rows(:)
-      type(loop_numbers_t), allocatable :: loops(:)
+      type(block_numbers_t), allocatable :: blocks(:)   !< (blocks)
+      type(row_numbers_t), allocatable :: rows(:)       !< (rows)
+      type(loop_numbers_t), allocatable :: loops(:)     !< (loops)
       type(vector_t), allocatable :: d(:)         !< (body vectors) in the axes of the orientation, unit of the loop
       !> (slides) Along the guide, with its sign in the loop: times the unknown it is the slide in the unit of the loop.
       type(vector_t), allocatable :: e(:)
@@ -134,13 +134,13 @@ module blocks
       type(block_t), allocatable :: list(:)       !< in solving order
       integer, allocatable :: unknown(:)          !< (unknowns) their numbers, block by block
       integer, allocatable :: block_of(:)         !< (unknowns) the number of the block that solves for it
-      type(equation_row_t), allocatable :: rows(:)
+      type(equation_row_t), allocatable :: rows(:)      !< (rows) block by block
       integer, allocatable :: equation(:)         !< (rows) its number among the equations
-      type(block_loop_t), allocatable :: loops(:)
-      type(body_vector_t), allocatable :: body_vectors(:)
-      type(slide_t), allocatable :: slides(:)
+      type(block_loop_t), allocatable :: loops(:)       !< (loops) block by block
+      type(body_vector_t), allocatable :: body_vectors(:)   !< (body vectors) loop by loop
+      type(slide_t), allocatable :: slides(:)           !< (slides) loop by loop
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
-      type(spanning_tree_t) :: tree
+      type(spanning_tree_t) :: tree               !< of the mechanism
       ! For the requests:
       !> Numbers of the blocks that are solved, in solving order; those of them that drives move: solved at every step.
       integer, allocatable :: needed(:), moving(:)

@@ -156,7 +156,7 @@ contains
 
       !> Appends an equation to the list.
       subroutine add(equation)
-         type(equation_t), intent(in) :: equation
+         type(equation_t), intent(in) :: equation   !< the equation
 
          e%count = e%count + 1
          e%list(e%count) = equation
@@ -230,7 +230,7 @@ contains
    !> Finds which body vectors and slides are in equations with given numbers. A slide is not in an equation if in every
    !> position it is at right angles to the direction of the equation: their cosine is within 8 units of rounding.
    pure subroutine find_unknowns(equations, numbers, has_vector, counts)
-      type(equations_t), intent(in) :: equations
+      type(equations_t), intent(in) :: equations   !< of a mechanism
       type(equation_numbers_t), intent(in) :: numbers   !< of the equations
       logical, intent(out) :: has_vector(:)  !< (body vectors) as in `equations_t`
       logical, intent(out) :: counts(:, :)   !< (2, slides) as in `equations_t`
@@ -259,7 +259,7 @@ contains
 
    !> Gives the row of `counts` that belongs to an equation: 2 for the y of a loop, otherwise 1.
    pure integer function side_of(equation)
-      type(equation_t), intent(in) :: equation
+      type(equation_t), intent(in) :: equation   !< the equation
 
       side_of = merge(2, 1, equation%kind == equation_y)
    end function side_of

@@ -17,14 +17,14 @@ module matching
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
       integer :: equations = 0, unknowns = 0      !< how many there are
-      integer, allocatable :: first(:), unknown(:)
+      integer, allocatable :: first(:), unknown(:)   !< (equations + 1), (all unknowns of all equations)
    end type incidence_t
 
 contains
 
    !> Finds a largest matching of equations with unknowns.
    subroutine match(incidence, unknown_of, equation_of)
-      type(incidence_t), intent(in) :: incidence
+      type(incidence_t), intent(in) :: incidence   !< which unknown is in which equation
       integer, allocatable, intent(out) :: unknown_of(:)    !< (equations) the unknown matched with each; 0: none
       integer, allocatable, intent(out) :: equation_of(:)   !< (unknowns) the equation matched with each; 0: none
       ! (equations) look: the index of the next unknown in the look ahead, never set back; seen: the last search that
@@ -104,12 +104,12 @@ contains
    !> member(first(k + 1) - 1) are block k, solved for the unknowns matched with them. A block needs unknowns of earlier
    !> blocks only, and unknowns of the equations left out. Without equations there is no block.
    subroutine find_blocks(incidence, equation_of, skip, first, member)
-      type(incidence_t), intent(in) :: incidence
+      type(incidence_t), intent(in) :: incidence   !< which unknown is in which equation
       integer, intent(in) :: equation_of(:)  !< (unknowns) the equation matched with each, never 0
       logical, intent(in) :: skip(:)         !< (equations) the equation belongs to no block
       integer, allocatable, intent(out) :: first(:)    !< (blocks + 1) where each block begins in `member`
       integer, allocatable, intent(out) :: member(:)   !< (equations not left out) numbers, by block in solving order
-      integer, parameter :: done = huge(1)
+      integer, parameter :: done = huge(1)   !< the number of an equation whose block is complete; above all others
       integer :: number(incidence%equations), low(incidence%equations), path(incidence%equations), &
          next(incidence%equations)
       integer :: stack(incidence%equations), counter, depth, top, blocks, members, root, e, other
@@ -180,7 +180,7 @@ contains
    !> Finds the part with too many equations (equations): those without an unknown, and all that are matched with
    !> unknowns of equations of the part. The part needs no other unknowns.
    function overdetermined(incidence, unknown_of, equation_of) result(over)
-      type(incidence_t), intent(in) :: incidence
+      type(incidence_t), intent(in) :: incidence   !< which unknown is in which equation
       integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none
       integer, intent(in) :: equation_of(:)  !< (unknowns) the equation of each in the matching; 0: none
       logical :: over(incidence%equations)
@@ -207,7 +207,7 @@ contains
    !> Finds the part with too few equations (unknowns): the free unknowns, and all that another largest matching could
    !> leave free. With equations and unknowns exchanged it is the part with too many equations.
    function underdetermined(incidence, unknown_of, equation_of) result(loose)
-      type(incidence_t), intent(in) :: incidence
+      type(incidence_t), intent(in) :: incidence   !< which unknown is in which equation
       integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none
       integer, intent(in) :: equation_of(:)  !< (unknowns) the equation of each in the matching; 0: none
       logical :: loose(incidence%unknowns)

@@ -202,7 +202,7 @@ contains
    !> Tells whether a body vector is rounding only: its terms cancel. Reason: rounding would put an angle into equations
    !> that do not hold this angle. Sum and terms may be rounded by 8 units of the largest term.
    pure logical function vanishes(sums, k)
-      type(loop_sums_t), intent(in) :: sums
+      type(loop_sums_t), intent(in) :: sums   !< of the loops
       integer, intent(in) :: k   !< the number of the body vector
 
       vanishes = all(abs(sums%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*sums%largest(k))
