@@ -32,7 +32,7 @@ module block_assemblies
    !> Steps of Gauss and Newton towards a singular solution: near a double root each step halves the error.
    integer, parameter :: singular_steps = 6
    !> Redundant equations hold to this part of their terms: lengths have 11 digits, a double root half of all digits.
-   real(dp), parameter :: surplus_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(coarser_rounding))
+   real(dp), parameter :: redundant_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(coarser_rounding))
    !> With a closing tolerance the paths end at solutions of some of the equations. Newton's method moves these by up to
    !> this many times the tolerance.
    real(dp), parameter :: moves_per_closing = 100.0_dp
@@ -91,7 +91,7 @@ contains
       if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
 
       moves = .false.
-      level = max(surplus_tolerance, sqrt(real(x%closing, dp)))
+      level = max(redundant_tolerance, sqrt(real(x%closing, dp)))
       if (f%system%p == 0) then
          ends = ends_t(paths=1, list=[path_end_t([(1.0_dp, 0.0_dp)], [(1.0_dp, 0.0_dp)])])
       else if (f%system%p == 1) then
@@ -124,23 +124,23 @@ contains
       subroutine add_position(ending)
          type(path_end_t), intent(in) :: ending   !< the solution
          type(solve_report_t) :: c
-         real(wp) :: place(size(f%turns)), residual
+         real(wp) :: values(size(f%turns)), residual
          logical :: is_real
          integer :: k
 
          call real_values(f, ending, &
-            merge(singular_conjugate_tolerance, conjugate_tolerance, ending%is_singular), place, is_real)
+            merge(singular_conjugate_tolerance, conjugate_tolerance, ending%is_singular), values, is_real)
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
          if (.not. is_real) found%moves = found%moves .or. ending%is_singular
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
-         place = anint(grid*place)/grid
+         values = anint(grid*values)/grid
 
          ! Half a turn is positive, whatever sign rounding gives it.
-         where (f%turns < 0 .and. place <= anint(-grid*pi)/grid) place = -place
-         call set_values(b, i, place, s)
+         where (f%turns < 0 .and. values <= anint(-grid*pi)/grid) values = -values
+         call set_values(b, i, values, s)
          call add_turns(b, x, i, s)
-         place = values_of(b, i, s)
+         values = values_of(b, i, s)
          ! Near a singular solution Newton's method by itself may go astray.
          do k = 1, merge(singular_steps, 0, ending%is_singular)
             call gauss_newton_step(b, x, i, s, residual)
@@ -151,18 +151,18 @@ contains
             found%partial = found%partial + 1
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > &
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), values) > &
             merge(max_singular_move, max_newton_move, ending%is_singular) + moves_per_closing*x%closing) then
             found%failed = found%failed + 1
             return
          end if
 
-         place = values_of(b, i, s)
+         values = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(place, found%x(:, k)) <= merge(same_singular_tolerance, same_solution_tolerance, &
+            if (apart(values, found%x(:, k)) <= merge(same_singular_tolerance, same_solution_tolerance, &
                ending%is_singular .or. c%singular)) return
          end do
-         found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])
+         found%x = reshape([found%x, values], [size(values), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
          found%rates_inconsistent = [found%rates_inconsistent, c%rates_inconsistent]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))

@@ -32,10 +32,10 @@ module block_bilinear
    real(wp), parameter :: zero_coefficient = 4096.0_wp*epsilon(1.0_wp)
    !> Redundant equations agree if they differ by less than this part of their terms. The numbers of the deck have 11
    !> digits, and the elimination may lose two. Newton's method then decides with the exact equations.
-   real(wp), parameter :: surplus_part = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
+   real(wp), parameter :: redundant_part = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
    !> With a closing tolerance redundant equations agree if they differ by less than this many times the tolerance: the
    !> elimination may lose one digit.
-   real(wp), parameter :: surplus_per_closing = 10.0_wp
+   real(wp), parameter :: redundant_per_closing = 10.0_wp
 
    !> An equation Re(l conj(factor w)) = value, with w a direction.
    type :: projection_t
@@ -86,48 +86,48 @@ contains
          end do
          call add_projections(d)
          call add_pairs(form, d)
-         call reduce(form, d, merge(max(surplus_part, surplus_per_closing*x%closing), zero_coefficient, rows > n))
+         call reduce(form, d, merge(max(redundant_part, redundant_per_closing*x%closing), zero_coefficient, rows > n))
       end associate
    end subroutine make_form
 
    !> Adds the linear equation of a loop of angles, w = exp(i phi) w_less, or of a slide, z = s w. If both angles are in
    !> one column, there is no equation.
-   pure subroutine add_angles(b, x, i, loop, s, form, draft)
+   pure subroutine add_angles(b, x, i, loop, s, form, builder)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       integer, intent(in) :: loop            !< the number of the loop, of kind loop_angles
       type(state_t), intent(in) :: s         !< with the drives and earlier blocks
       type(block_form_t), intent(in) :: form   !< with `turns`
-      type(bilinear_builder_t), intent(inout) :: draft   !< with the equations so far
+      type(bilinear_builder_t), intent(inout) :: builder   !< with the equations so far
       complex(wp) :: ratio
       integer :: less
 
       associate (g => b%loops(loop))
          if (g%orientation_column == g%less_column) return
-         draft%linear = draft%linear + 1
+         builder%linear = builder%linear + 1
          if (g%orientation <= b%orientations) then
             less = g%less_column
             ratio = exp(i_unit*given(b, x, i, g%row_x, s))*direction_factor(less, g%less, s)
-            draft%a(g%orientation_column, draft%linear) = direction_factor(g%orientation_column, g%orientation, s)
+            builder%a(g%orientation_column, builder%linear) = direction_factor(g%orientation_column, g%orientation, s)
          else
             less = form%turns(g%orientation_column)
             ratio = given(b, x, i, g%row_x, s) + s%u(g%less)%value
-            draft%a(g%orientation_column, draft%linear) = 1.0_wp
+            builder%a(g%orientation_column, builder%linear) = 1.0_wp
          end if
-         draft%a(less, draft%linear) = draft%a(less, draft%linear) - ratio
+         builder%a(less, builder%linear) = builder%a(less, builder%linear) - ratio
       end associate
    end subroutine add_angles
 
    !> Adds the equations of a vector loop to the projections: x, y, or the projection on a direction.
-   subroutine add_loop(b, x, i, loop, s, n, draft)
+   subroutine add_loop(b, x, i, loop, s, n, builder)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       integer, intent(in) :: loop            !< the number of the loop
       integer, intent(in) :: n               !< how many unknowns the block has
       type(state_t), intent(in) :: s         !< with the drives, earlier blocks, and given parts of loops
-      type(bilinear_builder_t), intent(inout) :: draft   !< with the equations so far
+      type(bilinear_builder_t), intent(inout) :: builder   !< with the equations so far
       type(projection_t) :: one
 
       allocate (one%l(n + 1))
@@ -150,7 +150,7 @@ contains
          integer, intent(in) :: row          !< the number of the row in the block
 
          one%value = given(b, x, i, row, s)
-         draft%projections = [draft%projections, one]
+         builder%projections = [builder%projections, one]
       end subroutine add
    end subroutine add_loop
 
@@ -209,17 +209,17 @@ contains
    !> Adds the projections as equations. Two projections of one loop, in any units, on different directions that turn
    !> together are one linear equation: the components of a closed loop, or a driven slide and its guide. Any other
    !> projection is a bilinear equation.
-   subroutine add_projections(draft)
-      type(bilinear_builder_t), intent(inout) :: draft   !< with projections; equations are added
-      logical :: is_done(size(draft%projections))
+   subroutine add_projections(builder)
+      type(bilinear_builder_t), intent(inout) :: builder   !< with projections; equations are added
+      logical :: is_done(size(builder%projections))
       real(wp) :: turn, ratio
       integer :: j, k, m
 
       is_done = .false.
       do j = 1, size(is_done)
-         associate (one => draft%projections(j))
+         associate (one => builder%projections(j))
             do k = j + 1, size(is_done)
-               associate (other => draft%projections(k))
+               associate (other => builder%projections(k))
                   turn = aimag(conjg(one%factor)*other%factor)
                   if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(zero_coefficient)) cycle
                   if (maxval(abs(one%l)) <= 0.0_wp .or. maxval(abs(other%l)) <= 0.0_wp) cycle
@@ -228,75 +228,75 @@ contains
                   if (maxval(abs(other%l - ratio*one%l)) > zero_coefficient*maxval(abs(other%l))) cycle
 
                   ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
-                  draft%linear = draft%linear + 1
-                  draft%a(:, draft%linear) = one%l
-                  draft%a(one%at, draft%linear) = draft%a(one%at, draft%linear) &
+                  builder%linear = builder%linear + 1
+                  builder%a(:, builder%linear) = one%l
+                  builder%a(one%at, builder%linear) = builder%a(one%at, builder%linear) &
                      - i_unit*(other%value/ratio*one%factor - one%value*other%factor)/turn
                   is_done([j, k]) = .true.
                end associate
             end do
 
             if (is_done(j)) cycle
-            draft%bilinear = draft%bilinear + 1
-            associate (c => draft%c(:, :, draft%bilinear), at => one%at + 1)
+            builder%bilinear = builder%bilinear + 1
+            associate (c => builder%c(:, :, builder%bilinear), at => one%at + 1)
                ! `c` counts from 1: element 1 is the coefficient of 1.
                c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
                c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
                c(1, 1) = c(1, 1) - one%value
             end associate
-            draft%size_of(draft%bilinear) = one%size_of + abs(one%value)
+            builder%size_of(builder%bilinear) = one%size_of + abs(one%value)
          end associate
       end do
    end subroutine add_projections
 
    !> Adds the bilinear equations w w' = 1 of directions and z w' = z' w of slides, and puts 1 for w w' in the other
    !> equations.
-   subroutine add_pairs(form, draft)
+   subroutine add_pairs(form, builder)
       type(block_form_t), intent(in) :: form   !< with `turns`
-      type(bilinear_builder_t), intent(inout) :: draft   !< with all other equations
+      type(bilinear_builder_t), intent(inout) :: builder   !< with all other equations
       integer :: k, j
 
       do k = 1, size(form%turns)
          if (form%turns(k) < 0) then
-            do j = 1, draft%bilinear
-               draft%c(0, 0, j) = draft%c(0, 0, j) + draft%c(k, k, j)
-               draft%c(k, k, j) = 0.0_wp
+            do j = 1, builder%bilinear
+               builder%c(0, 0, j) = builder%c(0, 0, j) + builder%c(k, k, j)
+               builder%c(k, k, j) = 0.0_wp
             end do
          end if
       end do
       do k = 1, size(form%turns)
-         draft%bilinear = draft%bilinear + 1
+         builder%bilinear = builder%bilinear + 1
          if (form%turns(k) < 0) then
-            draft%c(k, k, draft%bilinear) = 1.0_wp
-            draft%c(0, 0, draft%bilinear) = -1.0_wp
+            builder%c(k, k, builder%bilinear) = 1.0_wp
+            builder%c(0, 0, builder%bilinear) = -1.0_wp
          else
-            draft%c(k, form%turns(k), draft%bilinear) = 1.0_wp
-            draft%c(form%turns(k), k, draft%bilinear) = -1.0_wp
+            builder%c(k, form%turns(k), builder%bilinear) = 1.0_wp
+            builder%c(form%turns(k), k, builder%bilinear) = -1.0_wp
          end if
       end do
    end subroutine add_pairs
 
    !> Makes the system by eliminating the linear equations. Equations that follow from others are left out. Of more than
    !> 2p independent equations, the system has 2p combinations, and form%more the rest.
-   subroutine reduce(form, draft, level)
+   subroutine reduce(form, builder, level)
       type(block_form_t), intent(inout) :: form   !< basis, system and findings are set
-      type(bilinear_builder_t), intent(in) :: draft   !< with all equations
+      type(bilinear_builder_t), intent(in) :: builder   !< with all equations
       real(wp), intent(in) :: level          !< an equation follows from others if its rest is below this part of it
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: size_of
       integer :: p, j, k, count_of
 
-      call find_null_space(transpose(draft%a(:, :draft%linear)), level, basis)
+      call find_null_space(transpose(builder%a(:, :builder%linear)), level, basis)
       p = size(basis, 2) - 1
       allocate (form%basis(0:size(form%turns), 0:p))
       form%basis(:, :) = cmplx(basis, kind=dp)
-      allocate (c(0:p, 0:p, draft%bilinear), independent((p + 1)**2, 0))
+      allocate (c(0:p, 0:p, builder%bilinear), independent((p + 1)**2, 0))
       count_of = 0
-      do j = 1, draft%bilinear
+      do j = 1, builder%bilinear
          associate (one => c(:, :, count_of + 1))
-            one = matmul(transpose(basis), matmul(draft%c(:, :, j), conjg(basis)))
+            one = matmul(transpose(basis), matmul(builder%c(:, :, j), conjg(basis)))
             ! The rest `one` of an equation may be only rounding: it is compared with the terms and their factors.
-            size_of = max(draft%size_of(j), maxval(abs(draft%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
+            size_of = max(builder%size_of(j), maxval(abs(builder%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))
 

@@ -352,7 +352,7 @@ contains
       complex(dp), intent(out) :: next(:)    !< (2p) z after the step; of no use if the prediction fails
       logical, intent(out) :: is_done        !< the prediction has not failed
       !> The rule's stages: parts of the step at which tangents are taken, and the weights of the tangents.
-      real(dp), parameter :: stage_places(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
+      real(dp), parameter :: stage_parts(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: stage_weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), slope(size(point), 1)
       real(dp) :: t, rate
@@ -361,11 +361,11 @@ contains
       call find_t(from, to, covered, t, rate)
       slope(:, 1) = rate*tangent
       next = point + stage_weights(1)*step*slope(:, 1)
-      do k = 2, size(stage_places)
-         x = point + stage_places(k)*step*slope(:, 1)
+      do k = 2, size(stage_parts)
+         x = point + stage_parts(k)*step*slope(:, 1)
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
-         call find_t(from, to, covered + stage_places(k)*step, t, rate)
+         call find_t(from, to, covered + stage_parts(k)*step, t, rate)
          call assemble(paths, t, x, a, r, slope(:, 1))
          call solve(a, slope, is_done)
          if (.not. is_done) return

@@ -40,7 +40,7 @@ module initial_assembly
    integer, parameter :: max_first_group = 4
    !> The distance of a link from its guess counts up to this part of the characteristic length: a deck may give only
    !> angles.
-   real(wp), parameter :: far_place = 0.25_wp
+   real(wp), parameter :: max_position_offset = 0.25_wp
    !> Positions that differ by less are one (rad, characteristic lengths).
    real(wp), parameter :: same_assembly_tolerance = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
    !> Singular positions that differ by less are one: half of their digits is known.
@@ -67,7 +67,7 @@ contains
       type(solve_report_t) :: rest
       real(wp) :: implied(3, size(guess%links, 2)), turn(0:b%orientations), nearest
       logical :: is_complete, is_implied(size(implied, 2))
-      integer :: places(2, size(implied, 2)), k, i
+      integer :: finders(2, size(implied, 2)), k, i
 
       ! The guess takes over the whole turns of the drives: otherwise Newton's method would have to go through them.
       s%u%value = guess%values
@@ -81,7 +81,7 @@ contains
       rest = nothing_gathered
       if (is_solved(convergence)) call solve_blocks(b, x, pack([(i, i=1, size(found))], &
          [(all(b%needed /= i), i=1, size(found))]), w, s, rest)
-      places = places_of(b, x)
+      finders = places_of(b, x)
       is_complete = is_solved(convergence) .and. is_solved(rest)
       if (is_complete) is_complete = without_length(x, s, [(i, i=1, size(x%cylinders))]) == 0
 
@@ -96,13 +96,13 @@ contains
          implied(3, :) = implied(3, :) + turn(class)
       end associate
       if (is_complete .and. .not. any(is_implied)) then
-         if (is_surely_nearest(b, x, s, places, implied)) return
+         if (is_certified_nearest(b, x, s, finders, implied)) return
       end if
 
       nearest = no_distance
-      if (any(is_implied)) call find_nearest(b, x, guess, w, s, places, &
+      if (any(is_implied)) call find_nearest(b, x, guess, w, s, finders, &
          guess%links, is_complete, by_deck, nearest)
-      call find_nearest(b, x, guess, w, s, places, implied, is_complete, found)
+      call find_nearest(b, x, guess, w, s, finders, implied, is_complete, found)
       do i = 1, size(found)
          associate (one => found(i), choice => guess%choice(i))
             if (one%chosen == 0) cycle
@@ -112,8 +112,8 @@ contains
          end associate
       end do
 
-      if (is_nearer(nearest, distance_of(x, s, places, guess%links))) &
-         guess%choice(pack(places(1, :), is_implied))%is_incomplete = .true.
+      if (is_nearer(nearest, distance_of(x, s, finders, guess%links))) &
+         guess%choice(pack(finders(1, :), is_implied))%is_incomplete = .true.
       k = findloc(found(b%needed)%chosen, 0, dim=1)
       if (k == 0) then
          call solve_blocks(b, x, b%needed, w, s, convergence)
@@ -126,11 +126,11 @@ contains
    !> Tells whether no other assembly can be about as near to the goal as the assembly in `s`. There is none if the
    !> assembly is at the goal itself. Otherwise, in another assembly, an angle of the first block that differs is off by
    !> the separation of the block's positions, at least.
-   logical function is_surely_nearest(b, x, s, places, goal) result(is)
+   logical function is_certified_nearest(b, x, s, finders, goal) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s                    !< with an assembly
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
+      integer, intent(in) :: finders(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       real(wp) :: square(2, size(goal, 2)), later
       integer :: i
@@ -141,22 +141,22 @@ contains
       later = 0.0_wp
       is = .true.
       do i = size(b%list), 1, -1
-         later = later + sum(square, mask=places == i)
+         later = later + sum(square, mask=finders == i)
          if (.not. b%list(i)%explicit) is = about_equal*(separation_of(b, x, i, s) &
-            - sqrt(sum(square(1, :), mask=places(1, :) == i))) >= sqrt(later)
+            - sqrt(sum(square(1, :), mask=finders(1, :) == i))) >= sqrt(later)
          if (.not. is) return
       end do
-   end function is_surely_nearest
+   end function is_certified_nearest
 
    !> Puts the assembly that is nearest to the goal into the values of `s`. If there is none, it puts the positions of
    !> the blocks that have one.
-   subroutine find_nearest(b, x, guess, w, s, places, goal, is_complete, found, distance)
+   subroutine find_nearest(b, x, guess, w, s, finders, goal, is_complete, found, distance)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(inout) :: guess             !< where Newton's method starts; starts of paths may be added
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                 !< with the drives; then the values of the nearest assembly
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
+      integer, intent(in) :: finders(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       logical, intent(in) :: is_complete                !< `s` has an assembly: assemblies further away do not count
       type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions; the chosen ones are the assembly
@@ -177,7 +177,7 @@ contains
 
       values = s%u%value
       limit = no_distance
-      if (is_complete) limit = distance_of(x, s, places, goal)
+      if (is_complete) limit = distance_of(x, s, finders, goal)
       if (is_complete) limit = limit + same_assembly_tolerance*max(1.0_wp, limit)
 
       latest = iterating_below(b)
@@ -208,7 +208,7 @@ contains
             associate (own => own_unknowns(b, i))
                open(own) = 0
                if (largest_known(b, i, open) == 0) then
-                  if (found(i)%chosen == 0) call look_for_positions()
+                  if (found(i)%chosen == 0) call search_positions()
                   if (last_promising(b, [i], found, latest, seen, changed, spent, limit) == i) then
                      found(i)%chosen = found(i)%chosen + 1
                      call set_values(b, i, found(i)%x(:, found(i)%chosen), s)
@@ -256,15 +256,15 @@ contains
 
       !> Finds the positions of block `i`, unless its last search still holds: no block below has changed since, and
       !> positions that were not searched for are too far.
-      subroutine look_for_positions()
+      subroutine search_positions()
          real(wp) :: budget
 
          budget = sqrt(max(0.0_wp, limit**2 - spent(i - 1)))
          if (largest_known(b, i, changed) <= seen(i) .and. about_equal*found(i)%beyond >= budget) return
-         call find_candidates(b, x, guess, w, s, i, places, goal, budget, found(i))
+         call find_candidates(b, x, guess, w, s, i, finders, goal, budget, found(i))
          seen(i) = choices
          solves = solves + 1
-      end subroutine look_for_positions
+      end subroutine search_positions
    end subroutine find_nearest
 
    !> Gives for each block (blocks) the last block on which it builds that is not explicit; 0: there is none.
@@ -309,14 +309,14 @@ contains
    !> Finds the positions of a block, for given values of earlier blocks. Newton's method from the guess finds the
    !> first; if all others are further from the goal than the budget, they are not searched for. If there is no
    !> position, found%ending has the closure error that remains, or the cylinder whose length is below 0.
-   subroutine find_candidates(b, x, guess, w, s, i, places, goal, budget, found)
+   subroutine find_candidates(b, x, guess, w, s, i, finders, goal, budget, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(inout) :: guess             !< where Newton's method starts; a start of paths may be added
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                 !< with the values of earlier blocks; the block's own change
       integer, intent(in) :: i                          !< the number of the block
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
+      integer, intent(in) :: finders(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       real(wp), intent(in) :: budget                    !< a distance: the root of a sum of `squared_distances`
       type(candidates_t), intent(out) :: found          !< the nearest first, none chosen
@@ -326,7 +326,7 @@ contains
       integer, allocatable :: cylinders_here(:)
       integer :: k
 
-      cylinders_here = pack([(k, k=1, size(x%cylinders))], last_places(x, places) == i)
+      cylinders_here = pack([(k, k=1, size(x%cylinders))], last_blocks(x, finders) == i)
       allocate (found%x(size(start), 0), found%distance(0))
       start = guess%values(own_unknowns(b, i))
       call set_values(b, i, start, s)
@@ -372,7 +372,7 @@ contains
       subroutine record_position(unknowns, is_singular)
          real(wp), intent(in) :: unknowns(:)   !< (unknowns of the block) rad or unit of the loop
          logical, intent(in) :: is_singular    !< the position is singular
-         real(wp) :: y(size(unknowns)), square(2, size(places, 2)), distance
+         real(wp) :: y(size(unknowns)), square(2, size(finders, 2)), distance
          integer :: k, first
 
          associate (is_angle => own_unknowns(b, i) <= b%orientations)
@@ -389,8 +389,8 @@ contains
          if (without_length(x, s, cylinders_here) > 0) return
          y = values_of(b, i, s)
          square = squares_of(x, s, goal)
-         angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
-         distance = sqrt(sum(square, mask=places == i))
+         angles = sqrt(sum(square(1, :), mask=finders(1, :) == i))
+         distance = sqrt(sum(square, mask=finders == i))
 
          do k = 1, size(found%distance)
             if (is_nearer(distance, found%distance(k))) exit
@@ -406,13 +406,13 @@ contains
 
    !> Gives the number of the block (cylinders) after which the length of each cylinder is known; 0: ground links have
    !> both ends.
-   pure function last_places(x, places) result(last)
+   pure function last_blocks(x, finders) result(last)
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
+      integer, intent(in) :: finders(:, :)               !< (2, links) blocks that find angle and position; 0: none
       integer :: last(size(x%cylinders)), k
 
-      last = [(maxval(places(:, [x%cylinders(k)%i, x%cylinders(k)%j])), k=1, size(last))]
-   end function last_places
+      last = [(maxval(finders(:, [x%cylinders(k)%i, x%cylinders(k)%j])), k=1, size(last))]
+   end function last_blocks
 
    !> Finds the number of the pair of the first cylinder in a list that has no length above 0; 0: all have one.
    function without_length(x, s, list) result(pair)
@@ -439,20 +439,20 @@ contains
 
    !> Gives for each link (2, links) the number of the block that finds its angle, and of the block after which its
    !> position is known; 0: none, for ground links.
-   pure function places_of(b, x) result(places)
+   pure function places_of(b, x) result(finders)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer :: places(2, size(b%tree%orientation)), block_of(0:b%unknowns), k
+      integer :: finders(2, size(b%tree%orientation)), block_of(0:b%unknowns), k
 
       block_of(0) = 0
       block_of(1:) = b%block_of
-      places = 0
+      finders = 0
       do k = 1, size(x%chain%links)
          associate (h => x%chain%links(k))
-            places(1, h%link) = block_of(h%orientation)
-            places(2, h%link) = max(block_of(h%orientation), block_of(h%slide))
-            if (h%parent > 0) places(2, h%link) = max(places(2, h%link), places(2, h%parent))
-            if (h%root > 0) places(2, h%link) = max(places(2, h%link), block_of(h%root), block_of(h%root + 1))
+            finders(1, h%link) = block_of(h%orientation)
+            finders(2, h%link) = max(block_of(h%orientation), block_of(h%slide))
+            if (h%parent > 0) finders(2, h%link) = max(finders(2, h%link), finders(2, h%parent))
+            if (h%root > 0) finders(2, h%link) = max(finders(2, h%link), block_of(h%root), block_of(h%root + 1))
          end associate
       end do
    end function places_of
@@ -462,7 +462,7 @@ contains
    elemental logical function is_nearer(one, other) result(is)
       real(wp), intent(in) :: one, other                !< distances: roots of `squared_distances`
 
-      is = one < other - equal_distance_part*max(other, far_place)
+      is = one < other - equal_distance_part*max(other, max_position_offset)
    end function is_nearer
 
    !> Measures how far the links of a state are from a goal (2, links): the square of the angle, in rad, and of the
@@ -481,17 +481,17 @@ contains
    end function squares_of
 
    !> Gives the distance of an assembly from a goal, sqrt(sum(`squared_distances`)) over all links that a block moves.
-   real(wp) function distance_of(x, s, places, goal) result(distance)
+   real(wp) function distance_of(x, s, finders, goal) result(distance)
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s                    !< with the assembly
-      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and position; 0: none
+      integer, intent(in) :: finders(:, :)               !< (2, links) blocks that find angle and position; 0: none
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
 
-      distance = sqrt(sum(squares_of(x, s, goal), mask=places > 0))
+      distance = sqrt(sum(squares_of(x, s, goal), mask=finders > 0))
    end function distance_of
 
    !> Measures how far each link is from its guess (2, links): the square of the angle, in rad, and of the distance, in
-   !> lengths of `span`, of which `far_place` counts at most.
+   !> lengths of `span`, of which `max_position_offset` counts at most.
    pure function squared_distances(position, guess, span) result(square)
       real(wp), intent(in) :: position(:, :)            !< (3, links) x, y, from the origin of `guess`, and rad
       real(wp), intent(in) :: guess(:, :)               !< (3, links) x, y and rad
@@ -499,7 +499,7 @@ contains
       real(wp) :: square(2, size(position, 2))
 
       square(1, :) = wrap_angle(position(3, :) - guess(3, :))**2
-      square(2, :) = min(sum(((position(:2, :) - guess(:2, :))/span)**2, dim=1), far_place**2)
+      square(2, :) = min(sum(((position(:2, :) - guess(:2, :))/span)**2, dim=1), max_position_offset**2)
    end function squared_distances
 
    !> Bounds from below how far any other position of a block is from its position in `s`: some angle differs by the

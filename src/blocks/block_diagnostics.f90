@@ -262,7 +262,7 @@ contains
       integer :: kinds(size(b%list)), i
 
       call flag_singular_links(b, x, s, all_at_once, found)
-      kinds = judge_blocks(b, x, s)
+      kinds = classify_blocks(b, x, s)
       found%singularity = max(singular_unclear, maxval(kinds))
       if (maxval(kinds) < 0) return
       i = maxloc(kinds, dim=1)
@@ -273,7 +273,7 @@ contains
 
    !> Finds the kind of a position for each block (blocks): singular_unclear, ...; -1 if the block is not singular. The
    !> kind is -1 also if the block builds on a singular block: without the velocities there it has no right-hand side.
-   function judge_blocks(b, x, s) result(found)
+   function classify_blocks(b, x, s) result(found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< with the position
@@ -289,7 +289,7 @@ contains
             missing(own_unknowns(b, i)) = max(before, merge(1, 0, s%is_singular(i)))
          end associate
       end do
-   end function judge_blocks
+   end function classify_blocks
 
    !> Lists a diagnostic for each block that has a change point at an instant without velocities: each of the two
    !> branches has its own velocities. The list is empty if a block is singular there in another way.
@@ -301,7 +301,7 @@ contains
       type(diagnostic_t), allocatable :: list(:)   !< (any number)
       integer :: kinds(size(b%list)), i
 
-      kinds = judge_blocks(b, x, s)
+      kinds = classify_blocks(b, x, s)
       allocate (list(0))
       if (any(kinds >= 0 .and. kinds /= singular_change)) return
       do i = 1, size(kinds)

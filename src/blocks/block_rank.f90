@@ -17,7 +17,7 @@ module block_rank
    real(wp), parameter :: zero_singular_value = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
    !> A block with a degree of freedom left is moved by this, in rad and units of the loop, to find whether it can move:
    !> far above rounding, small compared with the links.
-   real(wp), parameter :: trial_move = 1.0e-3_wp
+   real(wp), parameter :: test_move = 1.0e-3_wp
    !> The step of second differences, in rad and units of the loop: their rounding is then as large as the terms that
    !> they neglect.
    real(wp), parameter, public :: difference_step = sqrt(sqrt(epsilon(1.0_wp)))
@@ -115,10 +115,10 @@ contains
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s         !< with a singular position
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
-      type(state_t) :: trial_state
+      type(state_t) :: moved_state
 
-      trial_state = s
-      call try_to_move(b, x, i, trial_state, moves)
+      moved_state = s
+      call try_to_move(b, x, i, moved_state, moves)
    end function moving_unknowns
 
    !> Finds which unknowns of a block can move while all blocks on which it builds stand still. The block is moved a
@@ -140,13 +140,13 @@ contains
       if (v%rank == v%n) return
       start = values_of(b, i, s)
       direction = v%right(v%n, :)
-      call set_values(b, i, start + trial_move*direction, s)
+      call set_values(b, i, start + test_move*direction, s)
       do k = 1, 20
          call gauss_newton_step(b, x, i, s, residual)
          if (residual <= corrected_residual) exit
       end do
       direction = values_of(b, i, s) - start
-      if (residual <= position_residual .and. norm2(direction) > 0.5_wp*trial_move) &
+      if (residual <= position_residual .and. norm2(direction) > 0.5_wp*test_move) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
    end subroutine try_to_move
 

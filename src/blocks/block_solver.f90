@@ -51,7 +51,7 @@ module block_solver
    !> Room for the largest block, in rows and n unknowns. Nothing in it outlives the solution of a block.
    type :: scratch_t
       real(wp), allocatable :: start(:)           !< (n) the values before the iteration, rad or unit of the loop
-      real(wp), allocatable :: surplus(:)         !< (rows) the residuals of a block with too many equations
+      real(wp), allocatable :: residuals(:)         !< (rows) the residuals of a block with too many equations
       real(wp), allocatable :: work(:)            !< of LAPACK: `work_length`
       integer, allocatable :: pivots(:), iwork(:) !< (rows) of LAPACK
       type(nearby_t) :: near                      !< the Jacobian, if `a` holds the factors of a nearby one
@@ -74,7 +74,7 @@ contains
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
-      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%surplus(rows), w%work(length), source=0.0_wp)
+      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%residuals(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
@@ -296,7 +296,7 @@ contains
             a(:4) = scratch%near%factors
          end if
          residual = largest_size(rows, right_sides)
-         if (rows > n) scratch%surplus(:rows) = right_sides(:, 1)
+         if (rows > n) scratch%residuals(:rows) = right_sides(:, 1)
          is_closed = residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
          side = merge(2, 1, is_closed)
 
@@ -374,7 +374,7 @@ contains
          end do
       end if
       if (rows > n .and. moves) then
-         if (iterations > 0) call record_closure_error(b, x, i, scratch%surplus, convergence)
+         if (iterations > 0) call record_closure_error(b, x, i, scratch%residuals, convergence)
          if (any(ended == [ended_converged, ended_stalled]) .and. &
             convergence%open%value > max(inconsistent_level*convergence%open%level, x%closing)) &
             ended = ended_inconsistent

@@ -28,10 +28,10 @@ module branch_switching
    !> point.
    real(wp), parameter :: short_substep = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
    !> It does if the prediction was right to this part of the substep. Circuits that pass each other at the distance d
-   !> are distinguished from crossing ones if d^2 is above right_part*short_substep**2, 1E-14.
-   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp)
+   !> are distinguished from crossing ones if d^2 is above prediction_part*short_substep**2, 1E-14.
+   real(wp), parameter :: prediction_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp)
    !> A prediction that is off by more than this part of the substep is wrong, whatever rounding may explain.
-   real(wp), parameter :: wrong_part = 1.0e-2_wp
+   real(wp), parameter :: wrong_prediction_part = 1.0e-2_wp
    !> A substep may be longer if the pivots at its ends are together less than this part of the Lipschitz constant. If a
    !> crank in line with a base is almost as long, the coupler is so fast that short substeps would all end in the zone
    !> in which rounding leaves no velocities. Three widths of that zone are enough. With more of them, circuits that do
@@ -171,7 +171,7 @@ contains
       type(state_t), intent(in) :: s                         !< the motion found last, with the blocks that have crossed
       real(wp), intent(in) :: correction                     !< of its prediction, in rad or units of the loop
       real(wp), dimension(size(b%moving)) :: lipschitz, rounded
-      real(wp) :: right, driven
+      real(wp) :: allowed, driven
       logical, dimension(size(b%moving)) :: crosses, is_short
 
       crosses = s%crossed(b%moving)
@@ -182,9 +182,9 @@ contains
       if (.not. is) return
       driven = abs(s%t - history%t(0))*largest_drive_rate(s)
       rounded = prediction_rounding*lipschitz/history%jacobian(b%moving)%pivot**2*max(s%change, driven)
-      right = right_part*(short_substep/max(short_substep, s%change))**2*s%change &
+      allowed = prediction_part*(short_substep/max(short_substep, s%change))**2*s%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
-      is = correction <= min(right, wrong_part*s%change)
+      is = correction <= min(allowed, wrong_prediction_part*s%change)
    end function is_smooth_passage
 
    !> Puts a block on its other branch, close to a change point or dead point, and then the blocks that build on it. On

@@ -16,15 +16,15 @@ module convergence
    !> Residuals above this part of the largest value are more than rounding of angles and of their sines.
    real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    !> Closure errors that differ by less than this part are equal: rounding shall not choose the pair that is named.
-   real(wp), parameter :: equal_opening_part = 1.0e-4_wp
+   real(wp), parameter :: equal_closure_part = 1.0e-4_wp
    !> Redundant equations may have this closure error, in units of their loops and radians, as data of 11 digits do.
    real(wp), parameter, public :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
    !> Their rates may have residuals of this part of the largest rate: the closure error, times a condition of 100.
-   real(wp), parameter :: open_rate_part = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
+   real(wp), parameter :: rate_residual_part = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
    !> With a closing tolerance the residuals of rates may be this many times the tolerance: the condition again.
    real(wp), parameter :: rates_per_closing = 100.0_wp
    !> With a closing tolerance they are never more than this part: equations whose rates differ so much stop the links.
-   real(wp), parameter :: held_rate_part = 0.1_wp
+   real(wp), parameter :: max_rate_residual_part = 0.1_wp
    !> If the body vectors of a loop are much shorter than its given part, closure errors and residuals of rates may be
    !> this many roundings of the given part.
    real(wp), parameter :: loop_roundings = 64.0_wp, rate_roundings = 4096.0_wp
@@ -116,28 +116,28 @@ contains
       integer, intent(in) :: i                              !< the number of the block, with one loop at least
       real(wp), intent(in) :: residuals(*)                  !< (rows of the block) unit of the loop or rad
       type(solve_report_t), intent(inout) :: convergence     !< convergence%open is set
-      real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
+      real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: error, level
       real(wp) :: largest
       integer :: m
 
-      opening = 0.0_wp
+      error = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            if (g%row_x > 0) opening(m) = abs(residuals(g%row_x))
-            if (g%row_y > 0) opening(m) = hypot(opening(m), residuals(g%row_y))
+            if (g%row_x > 0) error(m) = abs(residuals(g%row_x))
+            if (g%row_y > 0) error(m) = hypot(error(m), residuals(g%row_y))
             level(m) = max(1.0_wp, x%loops(m)%coarse*(loop_roundings*epsilon(1.0_wp)/inconsistent_level))
          end associate
       end do
 
-      largest = maxval(opening/level)
+      largest = maxval(error/level)
       convergence%open%value = 0.0_wp
       convergence%open%pair = 0
       convergence%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (opening(m)/level(m) < (1.0_wp - equal_opening_part)*largest) cycle
+            if (error(m)/level(m) < (1.0_wp - equal_closure_part)*largest) cycle
             if (row%pair < convergence%open%pair .or. (row%pair == 0 .and. row%drive < convergence%open%drive)) cycle
-            convergence%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
+            convergence%open = closure_error_t(error(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
    end subroutine record_closure_error
@@ -149,7 +149,7 @@ contains
       real(wp), intent(in) :: coarse         !< size of the block's given part over its own body vectors, 1 at least
       real(wp), intent(in) :: closing        !< closing tolerance (unit of the loop, rad)
 
-      contradict = norm2(open) > max(open_rate_part, rate_roundings*epsilon(1.0_wp)*coarse, &
-         min(rates_per_closing*min(closing, 1.0_wp), held_rate_part))*size_of
+      contradict = norm2(open) > max(rate_residual_part, rate_roundings*epsilon(1.0_wp)*coarse, &
+         min(rates_per_closing*min(closing, 1.0_wp), max_rate_residual_part))*size_of
    end function contradict
 end module convergence

@@ -117,7 +117,7 @@ contains
    end function turned
 
    !> Gives the size of the closure error of a pair with x and y of the deck and given angles, in the deck's unit.
-   pure real(wp) function distance_open(m, k, phi) result(open)
+   pure real(wp) function closure_distance(m, k, phi) result(open)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k               !< the number of the pair
       real(wp), intent(in) :: phi(:)         !< (links) rad
@@ -126,7 +126,7 @@ contains
          open = abs(closure_error_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
             turned(m, m%points(pair%point_j)%link, phi)))
       end associate
-   end function distance_open
+   end function closure_distance
 
    !> Estimates the angles (links) in rad: those of the deck or, if these contradict x and y of the links, better ones.
    function estimated_directions(m, tree, axes, span) result(phi)
@@ -136,7 +136,7 @@ contains
       real(wp), intent(in) :: span           !< characteristic length, in the deck's unit
       real(wp), dimension(size(m%links)) :: phi, u, v, w
       real(wp) :: before, after
-      logical :: placed(size(m%points))      ! points with known positions
+      logical :: has_position(size(m%points))      ! points with known positions
       logical :: is_far(size(m%links))       ! links whose angles change by more than `differing_angle`
       type(sorted_t) :: classes
       integer, allocatable :: list(:)
@@ -150,9 +150,9 @@ contains
          list = members(classes, i)
          u(list) = axes%angle_offset(list) + (phi(list(1)) - axes%angle_offset(list(1)))
       end do
-      placed = .true.
+      has_position = .true.
       if (largest_closure_error(u) <= good_part*span) return
-      placed = m%links(m%points%link)%ground .or. &
+      has_position = m%links(m%points%link)%ground .or. &
          hypot(m%points%offset(1), m%points%offset(2)) <= short_offset_part*span
 
       v = u
@@ -192,8 +192,8 @@ contains
                   do k = tree%near%first(list(i)), tree%near%first(list(i) + 1) - 1
                      pair = tree%near%member(k)
                      points = [m%pairs(pair)%point_i, m%pairs(pair)%point_j]
-                     if (all(placed(points) .or. tree%orientation(m%points(points)%link) == class)) &
-                        sum_of = sum_of + distance_open(m, pair, v)**2
+                     if (all(has_position(points) .or. tree%orientation(m%points(points)%link) == class)) &
+                        sum_of = sum_of + closure_distance(m, pair, v)**2
                   end do
                end do
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
@@ -201,8 +201,8 @@ contains
 
             angle = w(list(1)) - axes%angle_offset(list(1))
             if (maxval(abs(e)) > min_form_part*span**2) then
-               angle = least(e, angle)
-               where (tree%orientation(m%points%link) == class) placed = .true.
+               angle = minimizing_angle(e, angle)
+               where (tree%orientation(m%points%link) == class) has_position = .true.
             end if
             v(list) = axes%angle_offset(list) + angle
          end do
@@ -224,12 +224,12 @@ contains
             do k = tree%near%first(link), tree%near%first(link + 1) - 1
                associate (pair => tree%near%member(k), i => m%pairs(tree%near%member(k))%point_i, &
                           j => m%pairs(tree%near%member(k))%point_j)
-                  if (.not. (placed(i) .and. placed(j))) cycle
+                  if (.not. (has_position(i) .and. has_position(j))) cycle
                   distance = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
                   if (has_guide(m%pairs(pair)%kind)) distance = distance + norm2(way_of(m, m%pairs(pair), &
                      turned(m, m%points(i)%link, angles), turned(m, m%points(j)%link, angles)))
                   size_of = max(size_of, distance)
-                  open = max(open, distance_open(m, pair, angles))
+                  open = max(open, closure_distance(m, pair, angles))
                end associate
             end do
             is = is .or. open > open_part*size_of
@@ -244,15 +244,15 @@ contains
 
          largest = 0.0_wp
          do k = 1, size(m%pairs)
-            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) &
-               largest = max(largest, distance_open(m, k, angles))
+            if (has_position(m%pairs(k)%point_i) .and. has_position(m%pairs(k)%point_j)) &
+               largest = max(largest, closure_distance(m, k, angles))
          end do
       end function largest_closure_error
    end function estimated_directions
 
    !> Finds the angle, in rad, at which the form is least. Of minima that are about equally low, as the two sides of a
    !> guide, the nearest to `start` counts.
-   pure real(wp) function least(coefficients, start) result(u)
+   pure real(wp) function minimizing_angle(coefficients, start) result(u)
       real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the module's head, squared lengths
       real(wp), intent(in) :: start             !< rad: the angle from which the search begins
       real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)   !< rad: between the angles at which minima are sought
@@ -276,7 +276,7 @@ contains
          lipschitz = -form([coefficients(1), coefficients(2), 4.0_wp*coefficients(3), 4.0_wp*coefficients(4)], u)
          if (lipschitz > abs(slope)) u = u - slope/lipschitz
       end do
-   end function least
+   end function minimizing_angle
 
    !> Evaluates the form of the module's head at an angle.
    pure real(wp) function form(coefficients, angle)

@@ -70,7 +70,7 @@ contains
             associate (slide => t%slide(t%parent_joint(link)))
                if (slide > 0) h%slide = t%orientations + slide
             end associate
-            call set_place(m, t, x, h)
+            call assign_link_numbers(m, t, x, h)
             h%has_body_vector = any(abs([h%numbers%body_vector%x, h%numbers%body_vector%y]) > 0.0_wp)
             h%parent_orientation = t%orientation(t%parent(link))
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
@@ -110,7 +110,7 @@ contains
       real(wp), intent(inout) :: velocities(3, *)           !< (3, links) by time
       real(wp), intent(inout) :: accelerations(3, *)        !< (3, links) by time squared
       logical, intent(out) :: finite                        !< no number is out of range, nor is the sum of all
-      type(vector_t) :: place(0:2)
+      type(vector_t) :: origin(0:2)
       real(wp) :: check
       integer :: i
 
@@ -119,19 +119,19 @@ contains
       end do
       check = 0.0_wp
       do i = 1, n
-         call find_place(links(i), links(i)%numbers, unknowns, place)
+         call find_link_vector(links(i), links(i)%numbers, unknowns, origin)
          associate (h => links(i), f => unknowns(links(i)%orientation), k => links(i)%link)
             if (h%parent > 0) then
-               place(0) = vector_t(place(0)%x + positions(1, h%parent), place(0)%y + positions(2, h%parent))
-               place(1) = vector_t(place(1)%x + velocities(1, h%parent), place(1)%y + velocities(2, h%parent))
-               place(2) = vector_t(place(2)%x + accelerations(1, h%parent), place(2)%y + accelerations(2, h%parent))
+               origin(0) = vector_t(origin(0)%x + positions(1, h%parent), origin(0)%y + positions(2, h%parent))
+               origin(1) = vector_t(origin(1)%x + velocities(1, h%parent), origin(1)%y + velocities(2, h%parent))
+               origin(2) = vector_t(origin(2)%x + accelerations(1, h%parent), origin(2)%y + accelerations(2, h%parent))
             end if
 
-            positions(:, k) = [place(0)%x, place(0)%y, f%value + h%numbers%angle_offset]
-            velocities(:, k) = [place(1)%x, place(1)%y, f%rate]
-            accelerations(:, k) = [place(2)%x, place(2)%y, f%acceleration]
-            check = check + ((place(0)%x + place(0)%y) + (place(1)%x + place(1)%y) &
-               + ((place(2)%x + place(2)%y) + f%acceleration))
+            positions(:, k) = [origin(0)%x, origin(0)%y, f%value + h%numbers%angle_offset]
+            velocities(:, k) = [origin(1)%x, origin(1)%y, f%rate]
+            accelerations(:, k) = [origin(2)%x, origin(2)%y, f%acceleration]
+            check = check + ((origin(0)%x + origin(0)%y) + (origin(1)%x + origin(1)%y) &
+               + ((origin(2)%x + origin(2)%y) + f%acceleration))
          end associate
       end do
       finite = abs(check) <= huge(check)
@@ -160,7 +160,7 @@ contains
    end subroutine flag_links
 
    !> Gives a link the numbers of its position on its parent: offset, body vector and slide vector.
-   pure subroutine set_place(m, tree, x, link)
+   pure subroutine assign_link_numbers(m, tree, x, link)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree   !< of `m`
       type(geometry_t), intent(in) :: x      !< with the units and axes by the numbers of `m`
@@ -182,7 +182,7 @@ contains
             link%numbers%offset = vector_of(offset)
          end associate
       end associate
-   end subroutine set_place
+   end subroutine assign_link_numbers
 
    !> Gives two numbers as a vector.
    pure type(vector_t) function vector_of(numbers)

@@ -39,7 +39,7 @@ module predictor
    !> could come nearer to another branch than to its own.
    real(wp), parameter :: max_uncertain_part = 0.01_wp
    !> Accelerations that are uncertain by less than this part of the largest count as certain.
-   real(wp), parameter :: known_acceleration_part = 0.01_wp
+   real(wp), parameter :: certain_acceleration_part = 0.01_wp
    !> With a larger pivot no acceleration is so uncertain by rounding that a substep depends on it.
    real(wp), parameter :: safe_pivot = epsilon(1.0_wp)**0.2_wp
    !> Steps that differ by less than this part count as equal: instants are rounded too.
@@ -87,20 +87,20 @@ contains
       integer :: k
 
       if (history%filled == 0) history%jacobian = s%jacobian
-      call keep(size(b%moving), b%moving, s%jacobian, history%jacobian, least)
+      call copy_jacobians(size(b%moving), b%moving, s%jacobian, history%jacobian, least)
       uncertain = 0.0_wp
       if (least <= safe_pivot) then
          do k = 1, size(b%moving)
             uncertain = max(uncertain, uncertain_part(b, x, b%moving(k), history%jacobian(b%moving(k))%pivot, s))
          end do
       end if
-      call remember(history, s%t, s%u, uncertain)
+      call record_motion(history, s%t, s%u, uncertain)
       if (b%redundant > 0) history%entries = jacobian_of(b, x, 1, s)
    end subroutine accept
 
    !> Copies the findings from the Jacobians of a motion and finds the least pivot. Reason for plain arrays: each step
    !> does it, and descriptors cost time.
-   pure subroutine keep(n, list, found, kept, least)
+   pure subroutine copy_jacobians(n, list, found, kept, least)
       integer, intent(in) :: n                          !< the length of the list
       integer, intent(in) :: list(n)                    !< numbers of the blocks
       type(jacobian_t), intent(in) :: found(*)          !< (blocks) of the motion
@@ -113,7 +113,7 @@ contains
          kept(list(k)) = found(list(k))
          least = min(least, found(list(k))%pivot)
       end do
-   end subroutine keep
+   end subroutine copy_jacobians
 
    !> Compares a motion with the latest motion of a history: whether determinants keep their signs, and how much its
    !> Kantorovich ratio grows with the excursion of the drives.
@@ -198,7 +198,7 @@ contains
    end subroutine recall
 
    !> Records a motion as the latest of a history, which forgets the motion before the last two.
-   pure subroutine remember(history, t, unknown, uncertain)
+   pure subroutine record_motion(history, t, unknown, uncertain)
       type(history_t), intent(inout) :: history   !< the motions before
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
       type(unknown_t), intent(in) :: unknown(0:*)       !< (0:unknowns) of the motion
@@ -217,7 +217,7 @@ contains
          end associate
       end do
       history%filled = min(history%filled + 1, 3)
-   end subroutine remember
+   end subroutine record_motion
 
    !> Puts the latest motion of a history at a parameter of another path, and empties the history: rates on the path
    !> before predict nothing on the other path.
@@ -237,7 +237,7 @@ contains
       type(unknown_t), intent(inout) :: unknown(0:*)    !< (0:unknowns) the values are predicted, rates stay
       real(wp), intent(out) :: change                   !< the largest change from the latest, rad or unit of the loop
       real(wp) :: step, d, w(3)
-      integer :: i, k, known, s0, s1, s2
+      integer :: i, k, certain, s0, s1, s2
 
       if (asserts) call assert(history%filled > 0 .or. .not. abs(t - history%t(0)) > 0.0_wp, &
          'predict: a motion that is remembered, or its parameter')
@@ -248,9 +248,9 @@ contains
       s1 = history%slot(1)
       s2 = history%slot(2)
 
-      known = 0
+      certain = 0
       if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > max_uncertain_part) then
-         known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
+         certain = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
       else if (has_equal_steps(history, step)) then
          do k = 1, size(history%predicted)
             associate (p => history%past(history%predicted(k)))
@@ -273,7 +273,7 @@ contains
                d = w(1)*v(s0) + w(2)*a(s0) + w(3)*(a(s0) - a(s1))
             else
                d = step*v(s0)
-               if (known >= 0) d = step*(v(s0) + 0.5_wp*step*a(history%slot(known)))
+               if (certain >= 0) d = step*(v(s0) + 0.5_wp*step*a(history%slot(certain)))
             end if
          end associate
          unknown(i)%value = history%past(i)%value + d
@@ -302,7 +302,7 @@ contains
          v = max(v, epsilon(1.0_wp)*fastest)
          if (.not. v > 0.0_wp) return
          part = epsilon(1.0_wp)*x%blocks(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
-         if (.not. part*v > known_acceleration_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
+         if (.not. part*v > certain_acceleration_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
       end associate
    end function uncertain_part
 

@@ -28,7 +28,7 @@ module singular_position
 
    !> The refined position is no further away than this over the root of q (of 1, if q is larger), in rad and units of
    !> the loop: Newton's method ends within the root of the rounding.
-   real(wp), parameter :: furthest_place = 64.0_wp*sqrt(epsilon(1.0_wp))
+   real(wp), parameter :: max_shift = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> A residual below this part of the level is rounding. The level is the largest of the values, `sum_size`, and the
    !> rounding of drives and earlier blocks.
    real(wp), parameter :: rounding_residual = 1.5_wp*epsilon(1.0_wp)
@@ -83,17 +83,17 @@ contains
          if (abs(projected_residual) > rounding_residual*level .and. projected_residual*q < 0.0_wp) &
             call go_to(y + sign(sqrt(-2.0_wp*projected_residual/q), dot_product(first - y, k))*k)
       end associate
-      if (maxval(abs(y - first)) > furthest_place/sqrt(min(1.0_wp, abs(q))) .or. &
+      if (maxval(abs(y - first)) > max_shift/sqrt(min(1.0_wp, abs(q))) .or. &
          maxval(abs(residual_of(b, x, i, y, s))) > rounding_level*level) call set_values(b, i, first, s)
 
    contains
 
       !> Gives the block values and corrects them by one Gauss-Newton step, to `y`.
-      subroutine go_to(place)
-         real(wp), intent(in) :: place(:)    !< (n) the values, rad or unit of the loop
+      subroutine go_to(values)
+         real(wp), intent(in) :: values(:)    !< (n) the values, rad or unit of the loop
          real(wp) :: before
 
-         call set_values(b, i, place, s)
+         call set_values(b, i, values, s)
          call gauss_newton_step(b, x, i, s, before)
          y = values_of(b, i, s)
       end subroutine go_to
@@ -136,23 +136,23 @@ contains
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s         !< with its singular position
-      type(state_t) :: aside
+      type(state_t) :: nearby
       real(wp) :: driving(2), speed
-      logical :: agrees, crosses, agrees_aside, moves(b%list(i)%last - b%list(i)%first + 1)
+      logical :: agrees, crosses, agrees_nearby, moves(b%list(i)%last - b%list(i)%first + 1)
 
       found = singular_unclear
       if (b%list(i)%shape%rows > max_examined_rows) return
       driving = driving_motion(b, i, s)
       speed = merge(driving(1), sqrt(driving(2)), driving(1) > 0.0_wp)
       if (speed <= 0.0_wp) return
-      aside = s
-      call classify_singularity(b, x, i, speed, aside, agrees, crosses)
+      nearby = s
+      call classify_singularity(b, x, i, speed, nearby, agrees, crosses)
       if (agrees .and. .not. crosses) return
-      aside = s
-      call try_to_move(b, x, i, aside, moves)
+      nearby = s
+      call try_to_move(b, x, i, nearby, moves)
       if (any(moves)) then
-         call classify_singularity(b, x, i, speed, aside, agrees_aside, crosses)
-         if (agrees_aside .eqv. agrees) return
+         call classify_singularity(b, x, i, speed, nearby, agrees_nearby, crosses)
+         if (agrees_nearby .eqv. agrees) return
       end if
       found = merge(singular_change, singular_dead, agrees)
    end function block_singularity

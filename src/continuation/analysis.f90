@@ -319,7 +319,7 @@ contains
             other=analysis%convergence%ended == ended_elsewhere)], found)
       else
          call certify(analysis, was, step, crosses)
-         if (was /= on_motion) call tell_first(analysis, was, found)
+         if (was /= on_motion) call add_first_diagnostics(analysis, was, found)
       end if
 
       goes_on = found%known == 2 .and. .not. found%rests
@@ -361,7 +361,7 @@ contains
 
    !> Adds the remarks about the first position, or about the first motion after positions without a motion. A motion
    !> that is already followed began near a singular position and gets no remark about the deck's estimate.
-   subroutine tell_first(analysis, was, found)
+   subroutine add_first_diagnostics(analysis, was, found)
       type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       integer, intent(in) :: was                           !< the phase before: not_begun or at_start
       type(motion_t), intent(inout) :: found               !< remarks are added
@@ -372,7 +372,7 @@ contains
       end if
       if (.not. analysis%follows) call add_diagnostics(start_diagnostics(analysis%blocks, analysis%geometry, &
          analysis%guess, analysis%state, found, analysis%convergence%singular), found)
-   end subroutine tell_first
+   end subroutine add_first_diagnostics
 
    !> Ends a step that has found no motion at an instant. One remark names the equation that is not satisfied, or the
    !> end of the motion. The motion is followed again from the instant before. A limit is recorded unless equations

@@ -293,7 +293,7 @@ contains
          call add_excursion(continuation, t)
       accepted = accepted .and. continuation%convergence%kantorovich_ratio <= max_kantorovich_ratio
       ! Lengths before change points: at the length 0 of a cylinder links may be in line.
-      if (accepted .and. size(continuation%geometry%cylinders) > 0) call keep_lengths(continuation, t, accepted)
+      if (accepted .and. size(continuation%geometry%cylinders) > 0) call check_lengths(continuation, t, accepted)
       if (accepted .and. .not. continuation%convergence%determinant_signs_kept .and. &
          .not. continuation%convergence%singular) call pass_change_points(continuation, step)
       accepted = accepted .and. continuation%convergence%determinant_signs_kept
@@ -338,7 +338,7 @@ contains
 
    !> Finds whether a substep keeps all cylinders within the bounds of their lengths, also between its ends: a drive
    !> that leaves its chord could take a length out of its bounds and back.
-   subroutine keep_lengths(continuation, t, accepted)
+   subroutine check_lengths(continuation, t, accepted)
       type(continuation_t), intent(in) :: continuation   !< its state is at the end of the substep
       real(wp), intent(in) :: t              !< parameter of the path at the end of the substep, deck's unit of time
       logical, intent(inout) :: accepted     !< the substep keeps them; without cylinders it stays
@@ -358,7 +358,7 @@ contains
             if (.not. accepted) return
          end associate
       end do
-   end subroutine keep_lengths
+   end subroutine check_lengths
 
    !> Adds to the Kantorovich ratio of the motion found last the part of drives that leave their chords, or whose change
    !> their last rates do not predict: the predicted position may then be near another branch. Mostly the bound of the

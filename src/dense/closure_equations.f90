@@ -85,13 +85,13 @@ contains
          associate (u => configuration%slope(:, system%pairs(k)%point_i), &
             w => configuration%slope(:, system%pairs(k)%point_j))
             if (.not. has_guide(system%pairs(k)%kind)) then
-               call place_both(system, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
-               call place_both(system, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
+               call add_to_row_of_pair(system, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
+               call add_to_row_of_pair(system, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
             else
-               call place_both(system, a, 2*k - 1, k, projection_row(system, configuration, k, &
+               call add_to_row_of_pair(system, a, 2*k - 1, k, projection_row(system, configuration, k, &
                   normal(system, configuration, k), normal_angle(system, configuration, k), &
                   configuration%guide_zeros(:, k)))
-               call place_both(system, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+               call add_to_row_of_pair(system, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
             end if
          end associate
       end do
@@ -103,17 +103,17 @@ contains
             axis => axis_of(system%drives(k)%kind))
             select case (drive%kind)
             case (drive_angle)
-               call place(system, a, row, subject, coefficients)
+               call add_to_row(system, a, row, subject, coefficients)
             case (drive_x, drive_y)
                coefficients(axis) = 1.0_wp
                coefficients(3) = configuration%slope(axis, subject)
-               call place(system, a, row, system%link_of(subject), coefficients)
+               call add_to_row(system, a, row, system%link_of(subject), coefficients)
             case (drive_relangle)
-               call place(system, a, row, drive%second, coefficients)
-               call place(system, a, row, subject, -coefficients)
+               call add_to_row(system, a, row, drive%second, coefficients)
+               call add_to_row(system, a, row, subject, -coefficients)
 
             case (drive_slide)
-               call place_both(system, a, row, subject, projection_row(system, configuration, subject, &
+               call add_to_row_of_pair(system, a, row, subject, projection_row(system, configuration, subject, &
                   along(system, configuration, subject), normal_angle(system, configuration, subject) + pi/2.0_wp, &
                   configuration%guide_zeros([2, 1], subject) + pi/2.0_wp))
             end select
@@ -176,19 +176,19 @@ contains
    end function axis_of
 
    !> Adds coefficients to a row of the Jacobian, at the columns of the two links of a pair.
-   pure subroutine place_both(system, a, row, k, coefficients)
+   pure subroutine add_to_row_of_pair(system, a, row, k, coefficients)
       type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
       integer, intent(in) :: row             !< the number of the row
       integer, intent(in) :: k               !< the number of the pair
       real(wp), intent(in) :: coefficients(6)   !< of x_i, y_i, phi_i, x_j, y_j, phi_j
 
-      call place(system, a, row, system%link_of(system%pairs(k)%point_i), coefficients(:3))
-      call place(system, a, row, system%link_of(system%pairs(k)%point_j), coefficients(4:))
-   end subroutine place_both
+      call add_to_row(system, a, row, system%link_of(system%pairs(k)%point_i), coefficients(:3))
+      call add_to_row(system, a, row, system%link_of(system%pairs(k)%point_j), coefficients(4:))
+   end subroutine add_to_row_of_pair
 
    !> Adds coefficients to a row of the Jacobian, at the columns of a link; a ground link has none.
-   pure subroutine place(system, a, row, link, coefficients)
+   pure subroutine add_to_row(system, a, row, link, coefficients)
       type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
       integer, intent(in) :: row             !< the number of the row
@@ -198,7 +198,7 @@ contains
       associate (c => system%column(link))
          if (c > 0) a(row, c:c + 2) = a(row, c:c + 2) + coefficients
       end associate
-   end subroutine place
+   end subroutine add_to_row
 
    !> Gives the vector P - Q (2) of a pair, in the system's unit of length.
    pure function closure_error(system, configuration, k) result(d)

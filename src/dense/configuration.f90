@@ -129,14 +129,14 @@ contains
    end subroutine choose_references
 
    !> Adds a change of the unknowns to coordinates of all links, or rates to rates; ground links stay.
-   pure subroutine add_to_links(system, change, places)
+   pure subroutine add_to_links(system, change, coordinates)
       type(system_t), intent(in) :: system   !< the closure equations
       real(wp), intent(in) :: change(:)      !< (n) in the system's unit of length and rad, or per unit of time
-      real(wp), intent(inout) :: places(:, :)   !< (3, links) x, y, phi or their rates, in these units
+      real(wp), intent(inout) :: coordinates(:, :)   !< (3, links) x, y, phi or their rates, in these units
       integer :: i
 
       do i = 1, size(system%column)
-         if (system%column(i) > 0) places(:, i) = places(:, i) + change(system%column(i):system%column(i) + 2)
+         if (system%column(i) > 0) coordinates(:, i) = coordinates(:, i) + change(system%column(i):system%column(i) + 2)
       end do
    end subroutine add_to_links
 

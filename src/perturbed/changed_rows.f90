@@ -39,7 +39,7 @@ module changed_rows
       type(unknown_t), allocatable :: start(:)   !< (0:unknowns) of the unchanged mechanism, slides in the deck's unit
       logical :: only_driven = .false.           !< only links that only drives move are known
       logical :: is_singular = .false.           !< it has no unique rates
-      logical :: stays = .false.                 !< a search begins at the position itself, without a nudge
+      logical :: stays = .false.                 !< a search begins at the position itself, without a shift
       type(turned_t), allocatable :: turned(:)   !< (measures) angles from which measures continue
       type(state_t) :: state                     !< of the last solution
       type(workspace_t) :: work                  !< scratch of the solver
@@ -54,11 +54,11 @@ module changed_rows
 
    !> Up to so many links, the changed mechanisms of all directions are kept from instant to instant. For a larger
    !> mechanism one changed mechanism is kept, which takes less memory.
-   integer, parameter :: most_links = 1000
+   integer, parameter :: kept_links = 1000
    !> A search begins this far (rad, unit of the block) from the position: at the position itself it would end at once,
    !> and show nothing of the residual that is left. On a dead point it begins as far away as roundings may have moved
    !> the position.
-   real(wp), parameter :: nudge = sqrt(epsilon(1.0_wp))/1024.0_wp, singular_nudge = 16.0_wp*sqrt(epsilon(1.0_wp))
+   real(wp), parameter :: start_shift = sqrt(epsilon(1.0_wp))/1024.0_wp, singular_shift = 16.0_wp*sqrt(epsilon(1.0_wp))
    !> A change with a larger Kantorovich ratio is not of first order: its rows count as unknown.
    real(wp), parameter :: first_order_ratio = 0.5_wp
    !> At a dead point a position moves by the root of a change of numbers (rad, unit of the block). A search that goes
@@ -68,37 +68,37 @@ module changed_rows
 contains
 
    !> Makes a motion the position from which rows are solved from now on.
-   subroutine find_place(b, x, s, q, place)
+   subroutine find_place(b, x, s, q, base)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s         !< of the motion
       type(motion_t), intent(in) :: q        !< the motion, of the unchanged mechanism
-      type(base_position_t), intent(inout) :: place   !< the position, the motion before included
+      type(base_position_t), intent(inout) :: base   !< the position, the motion before included
       integer :: k
 
-      place%only_driven = q%known < 0
-      place%is_singular = q%known == 0
-      if (allocated(q%turned)) place%turned = q%turned
-      if (.not. allocated(place%start)) then
-         allocate (place%start(0:b%unknowns))
-         call make_room(b, ubound(s%drive_value, 2), place)
-         place%q = new_motion(size(q%position, 2))
-         place%q%known = 2
+      base%only_driven = q%known < 0
+      base%is_singular = q%known == 0
+      if (allocated(q%turned)) base%turned = q%turned
+      if (.not. allocated(base%start)) then
+         allocate (base%start(0:b%unknowns))
+         call make_room(b, ubound(s%drive_value, 2), base)
+         base%q = new_motion(size(q%position, 2))
+         base%q%known = 2
       end if
-      place%start(:) = s%u
-      do k = 1, ubound(place%start, 1)
-         place%start(k)%value = place%start(k)%value*slide_unit(b, x, k)
+      base%start(:) = s%u
+      do k = 1, ubound(base%start, 1)
+         base%start(k)%value = base%start(k)%value*slide_unit(b, x, k)
       end do
    end subroutine find_place
 
    !> Makes state and workspace of a base position for a structure.
-   subroutine make_room(b, drives, place)
+   subroutine make_room(b, drives, base)
       type(blocks_t), intent(in) :: b        !< the structure
       integer, intent(in) :: drives          !< how many drives there are
-      type(base_position_t), intent(inout) :: place   !< state and work are set
+      type(base_position_t), intent(inout) :: base   !< state and work are set
 
-      place%state = new_state(b, drives)
-      place%work = new_workspace(b)
+      base%state = new_state(b, drives)
+      base%work = new_workspace(b)
    end subroutine make_room
 
    !> Finds the changed mechanism of a direction. If it is not ready, it becomes a copy of the unchanged mechanism;
@@ -110,7 +110,7 @@ contains
       type(geometry_t), intent(in) :: x      !< the geometry of the unchanged mechanism
       integer, intent(out) :: i              !< the index of the changed mechanism in `list`
 
-      if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
+      if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= kept_links)))
       i = merge(k, 0, k <= ubound(list, 1))
       associate (p => list(i))
          if (p%is_ready) return
@@ -135,62 +135,62 @@ contains
 
    !> Finds the rows of a changed mechanism near a position. If its numbers do not fit the structure, it is solved by a
    !> structure of its own; if that has other redundant equations, it jams.
-   subroutine rows_with(b, perturbed, t, place, rows)
+   subroutine rows_with(b, perturbed, t, base, rows)
       type(blocks_t), intent(in) :: b        !< the structure of the unchanged mechanism
       type(perturbed_t), intent(in) :: perturbed   !< with geometry and path
       real(wp), intent(in) :: t              !< time, in the deck's unit
-      type(base_position_t), intent(inout) :: place   !< the position; then also the findings of the solution
+      type(base_position_t), intent(inout) :: base   !< the position; then also the findings of the solution
       type(row_t), intent(inout) :: rows(:)  !< (requests) `known` of a row tells how much of it was found
       type(structure_t) :: other
       type(drive_path_t) :: path
       integer :: i
 
-      place%q%t = t
+      base%q%t = t
       if (perturbed%fits) then
-         call solve_needed(b, perturbed%geometry, perturbed%path, place)
+         call solve_needed(b, perturbed%geometry, perturbed%path, base)
       else
          call make_structure(perturbed%m, other)
          call select_solved_blocks(perturbed%m, other%blocks, other%geometry)
          call assign_path(perturbed%m, other%blocks, other%geometry, path)
-         if (other%blocks%solvable) call make_room(other%blocks, size(path%laws), place)
-         call solve_needed(other%blocks, other%geometry, path, place)
-         call make_room(b, size(path%laws), place)
+         if (other%blocks%solvable) call make_room(other%blocks, size(path%laws), base)
+         call solve_needed(other%blocks, other%geometry, path, base)
+         call make_room(b, size(path%laws), base)
          if (.not. other%blocks%solvable .or. other%blocks%redundant /= b%redundant) then
-            place%jams = .true.
-            place%q%link_known = spread(-1, 1, size(perturbed%m%links))
+            base%jams = .true.
+            base%q%link_known = spread(-1, 1, size(perturbed%m%links))
          end if
       end if
 
-      if (allocated(place%turned)) place%q%turned = place%turned
+      if (allocated(base%turned)) base%q%turned = base%turned
       do i = 1, size(rows)
-         call find_row(perturbed%m, place%q, perturbed%m%requests(i), rows(i))
+         call find_row(perturbed%m, base%q, perturbed%m%requests(i), rows(i))
       end do
    end subroutine rows_with
 
    !> Solves the needed blocks of a changed mechanism in turn, from a base position, and finds the motion of its links.
    !> Blocks without a position, or whose change is not of first order, leave the links that they move flagged. If the
    !> structure is not solvable, nothing is solved.
-   subroutine solve_needed(b, x, path, place)
+   subroutine solve_needed(b, x, path, base)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x      !< of the changed mechanism
       type(drive_path_t), intent(in) :: path   !< of the changed mechanism
-      type(base_position_t), intent(inout) :: place   !< with the time place%q%t; then the motion and the findings
+      type(base_position_t), intent(inout) :: base   !< with the time base%q%t; then the motion and the findings
       type(solve_report_t) :: c
-      integer :: missing(0:ubound(place%start, 1)), k, lack, worst
+      integer :: missing(0:ubound(base%start, 1)), k, lost, worst
       logical :: finite
 
-      place%ratio = 0.0_wp
-      place%change = 0.0_wp
-      place%jams = .false.
-      place%opened = 0.0_wp
+      base%ratio = 0.0_wp
+      base%change = 0.0_wp
+      base%jams = .false.
+      base%opened = 0.0_wp
       if (.not. b%solvable) return
-      associate (s => place%state, w => place%work, q => place%q)
-         s%u(:) = place%start
+      associate (s => base%state, w => base%work, q => base%q)
+         s%u(:) = base%start
          do k = 1, ubound(s%u, 1)
             associate (value => s%u(k)%value)
                value = value/slide_unit(b, x, k)
                ! On a dead point the Jacobian has an inverse only if links that are in line turn apart.
-               if (.not. place%stays) value = value + merge(singular_nudge*(-1)**k, nudge, place%is_singular)
+               if (.not. base%stays) value = value + merge(singular_shift*(-1)**k, start_shift, base%is_singular)
             end associate
          end do
          call set_drive_values(path, q%t, s)
@@ -199,36 +199,36 @@ contains
          worst = missing_nothing
          do k = 1, size(b%needed)
             associate (i => b%needed(k), block => b%list(b%needed(k)))
-               lack = missing_nothing
-               if (worst > missing_nothing) lack = largest_known(b, i, missing)
-               if (place%only_driven .and. .not. block%explicit) lack = missing_all
-               if (lack < missing_all) then
+               lost = missing_nothing
+               if (worst > missing_nothing) lost = largest_known(b, i, missing)
+               if (base%only_driven .and. .not. block%explicit) lost = missing_all
+               if (lost < missing_all) then
                   call solve_block(b, x, i, .true., w, s, c)
 
-                  place%ratio = max(place%ratio, c%kantorovich_ratio)
+                  base%ratio = max(base%ratio, c%kantorovich_ratio)
                   ! A position out of reach contradicts nothing: a smaller change may find one.
                   if (is_solved(c) .or. c%ended == ended_inconsistent) &
-                     place%opened = max(place%opened, c%open%value/c%open%level)
-                  place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_inconsistent &
-                     .or. place%opened > place%room
+                     base%opened = max(base%opened, c%open%value/c%open%level)
+                  base%jams = base%jams .or. c%ended == ended_inconsistent .or. c%rates_inconsistent &
+                     .or. base%opened > base%room
 
-                  if (c%singular) lack = missing_rates
-                  if (.not. is_solved(c) .or. c%rates_inconsistent) lack = missing_all
-                  if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(b, x, i, w, s)
-                  if (place%is_singular) then
-                     if (c%change > singular_change) lack = missing_all
+                  if (c%singular) lost = missing_rates
+                  if (.not. is_solved(c) .or. c%rates_inconsistent) lost = missing_all
+                  if (block%shape%rows > block%shape%n .and. lost < missing_rates) call refine_rates(b, x, i, w, s)
+                  if (base%is_singular) then
+                     if (c%change > singular_change) lost = missing_all
                   else if (c%kantorovich_ratio > first_order_ratio .and. .not. c%singular) then
-                     lack = missing_all
+                     lost = missing_all
                   end if
                end if
-               worst = max(worst, lack)
-               if (lack > missing_nothing) missing(b%unknown(block%first:block%last)) = lack
+               worst = max(worst, lost)
+               if (lost > missing_nothing) missing(b%unknown(block%first:block%last)) = lost
             end associate
          end do
 
          ! The changes of explicit unknowns count too: a drive that makes full turns does not return.
          do k = 1, ubound(s%u, 1)
-            place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))
+            base%change = max(base%change, abs(s%u(k)%value - base%start(k)%value/slide_unit(b, x, k)))
          end do
          call move_links(x%chain, x%chain%wanted, s, q, finite)
          if (size(b%ratios) > 0) call get_ratios(b, x, path, [(missing(b%unknown(max(1, b%list(k)%first))) &

@@ -30,7 +30,7 @@ module error_estimate
    !> For the closure error, lengths and directions are off by the closure error over this.
    real(wp), parameter :: closure_parts = 8.0_wp
    !> The roundings of a drawing may be larger than its closure error: all of 140 drawings are within this factor.
-   real(wp), parameter :: closure_caution = 2.0_wp
+   real(wp), parameter :: closure_safety_factor = 2.0_wp
    !> The last digit that is shown is worth so many errors by the closure error: with as many as of roundings nothing of
    !> a drawing would be shown.
    real(wp), parameter :: closure_errors_a_digit = 1.0_wp
@@ -125,7 +125,7 @@ contains
       if (estimator%closure > 0.0_wp) then
          ! Changes by a much smaller part of the closure error would show how the weights of equations change.
          call find_largest_changes(estimator%closure/(closure_parts*epsilon(1.0_wp)), estimator%sizes%length, &
-            closure_caution*ratio_of_rows(closure_parts), .true., found%by_closure, is_small)
+            closure_safety_factor*ratio_of_rows(closure_parts), .true., found%by_closure, is_small)
          found%by_closure = min(found%by_closure, nothing_known)
       end if
 

@@ -53,10 +53,10 @@ module sensitivities
    !> A step below this part of the largest step that these limits allow is too short: rounding is larger than needed.
    real(wp), parameter :: too_near = 0.25_wp
    !> Beyond the limit of a motion there is no root: the step counts as so many times too long, or more.
-   real(wp), parameter :: no_root = 4.0_wp
+   real(wp), parameter :: beyond_limit_factor = 4.0_wp
    integer, parameter :: max_attempts = 12        !< steps that are tried; each attempt may be a thousand times shorter
    !> The closure error of redundant equations grows at most by this factor if a number may change.
-   real(wp), parameter :: more_open = 2.0_wp
+   real(wp), parameter :: max_closure_growth = 2.0_wp
 
 contains
 
@@ -90,7 +90,7 @@ contains
       estimator%place%room = huge(1.0_wp)
       call find_rows(middle, m)
       ! A change that enlarges the closure error of redundant equations jams, even within a closing tolerance.
-      estimator%place%room = inconsistent_level + more_open*estimator%place%opened
+      estimator%place%room = inconsistent_level + max_closure_growth*estimator%place%opened
 
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
@@ -100,7 +100,7 @@ contains
 
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
-            call look_at_joint(m, one, q%t, usual_step*natural_unit(one, estimator%sizes), side, order)
+            call check_joints(m, one, q%t, usual_step*natural_unit(one, estimator%sizes), side, order)
             call find_step(one, side, step)
 
             down = middle
@@ -174,7 +174,7 @@ contains
             ! On a dead point only links that drives move are known, and no step is too near the dead point.
             if (estimator%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
             too_far = max(estimator%place%change/max_unknown_change, estimator%place%ratio/max_ratio, too_near/2.0_wp)
-            if (any(up%known < middle%known)) too_far = max(too_far, no_root)
+            if (any(up%known < middle%known)) too_far = max(too_far, beyond_limit_factor)
             if (too_far <= 1.0_wp .and. (too_far >= too_near .or. .not. abs(step) < usual)) exit
             step = sign(min(usual, abs(step)*max(0.5_wp/too_far, 1.0e-3_wp)), step)
          end do
@@ -203,7 +203,7 @@ contains
    !> Finds which derivatives with respect to a number exist at a time, and on which side: the joints of a rise may be
    !> near. A start or a duration that grows moves joints to later times. At a joint that moves, the derivative of the
    !> acceleration, or of the velocity, with respect to the number differs from one side to the other.
-   pure subroutine look_at_joint(m, one, t, step, side, order)
+   pure subroutine check_joints(m, one, t, step, side, order)
       type(mechanism_t), intent(in) :: m
       type(tolerance_t), intent(in) :: one   !< of the number
       real(wp), intent(in) :: t              !< time, in the deck's unit
@@ -224,5 +224,5 @@ contains
          ! At the joint itself the derivative from the right is taken.
          side = merge(1, -1, ahead > joint_distance(term))
       end associate
-   end subroutine look_at_joint
+   end subroutine check_joints
 end module sensitivities

@@ -11,7 +11,7 @@ module assemblies
    use convergence, only: is_solved
    use block_state, only: set_drive_values
    use continuation, only: continuation_t, begin_continuation, solve_at
-   use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => same_assembly_tolerance
+   use initial_assembly, only: places_of, squared_distances, is_nearer, same_position => same_assembly_tolerance
    use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -73,13 +73,13 @@ contains
       type(assemblies_t), intent(out) :: assemblies   !< all that were found
       type(continuation_t) :: f
       type(assembly_block_t) :: one
-      integer :: i, k, places(2, size(m%links))
+      integer :: i, k, finders(2, size(m%links))
 
       allocate (assemblies%list(0), assemblies%blocks(0))
       call begin_continuation(f, m)
       if (.not. f%blocks%solvable) return
       call set_drive_values(f%path, t, f%state)
-      places = places_of(f%blocks, f%geometry)
+      finders = places_of(f%blocks, f%geometry)
       do i = 1, size(f%blocks%list)
          associate (shape => f%blocks%list(i)%shape)
             if (f%blocks%list(i)%explicit .or. shape%n == 0) cycle
@@ -87,8 +87,8 @@ contains
             one%unknowns = shape%n
             one%is_redundant = shape%rows > shape%n
          end associate
-         one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
-         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
+         one%links = pack([(k, k=1, size(m%links))], finders(1, :) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], finders(2, :) == i)
          assemblies%blocks = [assemblies%blocks, one]
       end do
       call search(m, f, assemblies)
@@ -118,7 +118,7 @@ contains
          q = new_motion(size(m%links))
          call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, unused)
          ! Of all assemblies that are near enough the nearest counts, without whole turns.
-         nearest = same_place
+         nearest = same_position
          do i = 1, size(assemblies%list)
             apart = maxval(separation(assemblies%list(i)%position, q%position, f%geometry%span))
             if (apart > nearest) cycle

@@ -24,7 +24,7 @@ contains
       !> (3, 0:2, links) x, y (from the origin of `q`, deck's unit), phi (rad), and their derivatives by time.
       type(ball_t), intent(out) :: links(3, 0:2, size(q%position, 2))
       real(wp), intent(out) :: largest(2, 0:2)   !< largest errors of lengths and angles (rad), and of derivatives
-      type(vector_t) :: place(0:2)
+      type(vector_t) :: vector(0:2)
       real(wp) :: error(3, 0:2)
       integer :: i
 
@@ -32,9 +32,9 @@ contains
       largest = 0.0_wp
       do i = 1, x%chain%wanted
          associate (h => x%chain%links(i), own => x%chain%links(i)%link, f => balls%u(x%chain%links(i)%orientation))
-            call find_place(h, numbers%links(i), balls%u, place)
-            links(1, :, own) = place%x
-            links(2, :, own) = place%y
+            call find_link_vector(h, numbers%links(i), balls%u, vector)
+            links(1, :, own) = vector%x
+            links(2, :, own) = vector%y
             if (h%parent > 0) links(:2, :, own) = links(:2, :, own) + links(:2, :, h%parent)
             links(3, :, own) = [f%value + numbers%links(i)%angle_offset, f%rate, f%acceleration]
             error(:, 0) = distance(links(:, 0, own), q%position(:, own))

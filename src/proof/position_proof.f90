@@ -40,7 +40,7 @@ module position_proof
    !> A map with a larger rate of contraction is not used: 1 less the rate is a divisor.
    real(wp), parameter :: max_rate = 0.999_wp
    !> Balls are larger than necessary by this factor: roundings of the inequality do not matter then.
-   real(wp), parameter :: larger = 1.01_wp
+   real(wp), parameter :: enlargement = 1.01_wp
 
    !> The numbers of the proof of a block.
    type :: block_work_t
@@ -76,47 +76,47 @@ contains
 
    !> Proves the position of the needed blocks at the time and values of a state, in solving order. The proof ends at
    !> the first block that is not proved.
-   subroutine prove_position(numbers, b, path, s, order, placed, failed)
+   subroutine prove_position(numbers, b, path, s, order, proved, failed)
       type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path   !< of the drives
       type(state_t), intent(in) :: s         !< the computed motion, with time and drives
       integer, intent(in) :: order           !< 0: position; 2: velocities and accelerations as well
-      type(proved_position_t), intent(inout) :: placed   !< the proof, as far as it goes
+      type(proved_position_t), intent(inout) :: proved   !< the proof, as far as it goes
       integer, intent(out) :: failed         !< number of the block that is not proved; 0: all are proved
       type(bounds_t) :: law
       logical :: is_proved
       integer :: i, k
 
-      placed%t = s%t
-      placed%closure_error = 0.0_wp
+      proved%t = s%t
+      proved%closure_error = 0.0_wp
       ! No equation depends on unknowns of later blocks, but some hold them with factors that cancel: any value serves.
-      placed%u(:) = unknown_t()
+      proved%u(:) = unknown_t()
       do i = 1, size(path%laws)
          law = bounds_of(path%laws(i), s%t - number_error*abs(s%t), s%t + number_error*abs(s%t), .true.)
          associate (value => s%drive_value(:, i), unit => path%unit(i))
-            placed%drive(:, i)%mid = value
-            placed%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &
+            proved%drive(:, i)%mid = value
+            proved%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &
                4.0_wp*rounding*abs(value))*room
          end associate
       end do
 
       do k = 1, size(b%needed)
          failed = b%needed(k)
-         call prove_block(numbers, b, failed, s, order, placed, is_proved)
+         call prove_block(numbers, b, failed, s, order, proved, is_proved)
          if (.not. is_proved) return
       end do
       failed = 0
    end subroutine prove_position
 
    !> Proves the values of the unknowns of a block in a state, and their derivatives if these are wanted.
-   subroutine prove_block(numbers, b, i, s, order, placed, is_proved)
+   subroutine prove_block(numbers, b, i, s, order, proved, is_proved)
       type(ball_numbers_t), intent(in) :: numbers   !< the geometry in balls
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< number of the block
       integer, intent(in) :: order           !< 0: values; 2: derivatives as well
       type(state_t), intent(in) :: s         !< the computed motion
-      type(proved_position_t), intent(inout) :: placed   !< with drives and earlier blocks; then also with this block
+      type(proved_position_t), intent(inout) :: proved   !< with drives and earlier blocks; then also with this block
       logical, intent(out) :: is_proved      !< values, and derivatives if wanted, are proved
       type(block_work_t) :: w
       type(unknown_t) :: exact
@@ -125,48 +125,48 @@ contains
 
       associate (block => b%list(i), own => own_unknowns(b, i))
          do k = 1, size(own)
-            call set_ball(b, own(k), ball_t(s%u(own(k))%value, 0.0_wp), placed%ball_state_t)
-            placed%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)
-            placed%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
+            call set_ball(b, own(k), ball_t(s%u(own(k))%value, 0.0_wp), proved%ball_state_t)
+            proved%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)
+            proved%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
          end do
 
          is_proved = block%explicit
          if (block%explicit) then
-            associate (row => b%rows(block%first_row), explicit => placed%u(own(1)))
-               call find_direct(row, numbers%rows(block%first_row), placed%drive, placed%u(row%other), exact)
-               call set_radius(b, own(1), distance(exact%value, explicit%value%mid), placed%ball_state_t)
+            associate (row => b%rows(block%first_row), explicit => proved%u(own(1)))
+               call find_direct(row, numbers%rows(block%first_row), proved%drive, proved%u(row%other), exact)
+               call set_radius(b, own(1), distance(exact%value, explicit%value%mid), proved%ball_state_t)
                explicit%rate%radius = distance(exact%rate, explicit%rate%mid)
                explicit%acceleration%radius = distance(exact%acceleration, explicit%acceleration%mid)
-               placed%open(0, block%first_row) = explicit%value%radius
-               placed%open(1, block%first_row) = explicit%rate%radius
+               proved%open(0, block%first_row) = explicit%value%radius
+               proved%open(1, block%first_row) = explicit%rate%radius
             end associate
             return
          end if
 
-         call contract(b, numbers, i, placed%ball_state_t, w, is_proved)
+         call contract(b, numbers, i, proved%ball_state_t, w, is_proved)
          if (.not. is_proved) return
          w%open(:) = top(w%r)
-         call subtract_product(1, placed%u, own, w)
-         placed%open(0, block%first_row:block%last_row) = w%open
-         placed%open(1, block%first_row:block%last_row) = top(w%v)
+         call subtract_product(1, proved%u, own, w)
+         proved%open(0, block%first_row:block%last_row) = w%open
+         proved%open(1, block%first_row:block%last_row) = top(w%v)
 
-         call find_ball(b, numbers, i, placed%ball_state_t, w, -1.0_wp, radius)
+         call find_ball(b, numbers, i, proved%ball_state_t, w, -1.0_wp, radius)
          is_proved = radius >= 0.0_wp
          if (.not. is_proved) return
-         if (size(w%r) > size(own)) placed%closure_error = max(placed%closure_error, maxval(top(w%r)))
+         if (size(w%r) > size(own)) proved%closure_error = max(proved%closure_error, maxval(top(w%r)))
          do k = 1, size(own)
             call set_radius(b, own(k), min(radius, (w%x(k) + 0.5_wp*(w%at_centre(k) + w%off(k))*radius)*room), &
-               placed%ball_state_t)
+               proved%ball_state_t)
          end do
 
          do k = 1, order
-            if (k == 2) call ball_accelerations(b, i, placed%ball_state_t, w%v)
-            call subtract_product(k, placed%u, own, w)
+            if (k == 2) call ball_accelerations(b, i, proved%ball_state_t, w%v)
+            call subtract_product(k, proved%u, own, w)
             call apply(size(w%r), size(own), w%inverse, top(w%v), w%x)
             largest = maxval(w%x)/(1.0_wp - maxval(w%off))*room
             w%x(:) = (w%x + w%off*largest)*room
-            if (k == 1) placed%u(own)%rate%radius = w%x
-            if (k == 2) placed%u(own)%acceleration%radius = w%x
+            if (k == 1) proved%u(own)%rate%radius = w%x
+            if (k == 2) proved%u(own)%acceleration%radius = w%x
             is_proved = is_proved .and. all(w%x <= huge(1.0_wp))
          end do
       end associate
@@ -211,11 +211,11 @@ contains
          midpoints(work%row(k), work%column(k)) = work%j(k)%mid
       end do
       call bound_inverse(size(work%r), size(work%x), midpoints, work%inverse, work%of_midpoints, exists)
-      if (exists) call find_off(work, work%at_centre)
+      if (exists) call bound_contraction(work, work%at_centre)
    end subroutine contract
 
    !> Bounds the row sums of |1 - A J| for the last assembled Jacobian J of a block.
-   pure subroutine find_off(work, off)
+   pure subroutine bound_contraction(work, off)
       type(block_work_t), intent(in) :: work   !< with J, A, and the row sums of the midpoints
       real(wp), intent(out) :: off(:)        !< (n) the bounds, without a unit
       real(wp) :: wide(size(work%r))
@@ -227,7 +227,7 @@ contains
       end do
       call apply(size(wide), size(off), work%inverse, wide, off)
       off = (work%of_midpoints + off)*(1.0_wp + (16 + size(work%x))*rounding)
-   end subroutine find_off
+   end subroutine bound_contraction
 
    !> Finds a ball about the unknowns of a block in which it has exactly one solution, by the argument of the module's
    !> head. The unknowns of the state, and the equations in `work`, become those in this ball or a larger one.
@@ -263,7 +263,7 @@ contains
             call set_radius(b, b%unknown(b%list(i)%first + k - 1), (centre(k) + radius)*room, balls)
          end do
          call assemble_balls(b, numbers, i, balls, work%j, work%r, work%v)
-         call find_off(work, work%off)
+         call bound_contraction(work, work%off)
          if (.not. all(work%off <= max_rate)) exit
 
          rate = max(0.0_wp, maxval(work%off))
@@ -374,6 +374,6 @@ contains
 
       r = -1.0_wp
       root = (1.0_wp - z1)**2 - 2.0_wp*z2*eta
-      if (root > 0.0_wp .and. z1 <= max_rate) r = 2.0_wp*eta/(1.0_wp - z1 + sqrt(root))*larger
+      if (root > 0.0_wp .and. z1 <= max_rate) r = 2.0_wp*eta/(1.0_wp - z1 + sqrt(root))*enlargement
    end function radius_of
 end module position_proof

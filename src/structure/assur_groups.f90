@@ -65,16 +65,16 @@ contains
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (.not. has_guide(m%pairs(i)%kind)) then
                do axis = 1, 2
-                  call record_component(p, axis_directions(:, axis))
-                  call record_component(q, axis_directions(:, axis))
-                  call close_equation()
+                  call add_component(p, axis_directions(:, axis))
+                  call add_component(q, axis_directions(:, axis))
+                  call complete_equation()
                end do
             else
-               call note(m%points(p)%link, angle)
-               call note(m%points(q)%link, angle)
-               call close_equation()
-               call record_projection(i, across=.true.)
-               call close_equation()
+               call enter(m%points(p)%link, angle)
+               call enter(m%points(q)%link, angle)
+               call complete_equation()
+               call add_projection(i, across=.true.)
+               call complete_equation()
             end if
          end associate
       end do
@@ -83,25 +83,25 @@ contains
          associate (subject => m%drives(i)%subject)
             select case (m%drives(i)%kind)
             case (drive_angle)
-               call note(subject, angle)
+               call enter(subject, angle)
             case (drive_relangle)
-               call note(subject, angle)
-               call note(m%drives(i)%second, angle)
+               call enter(subject, angle)
+               call enter(m%drives(i)%second, angle)
             case (drive_x)
-               call record_component(subject, axis_directions(:, 1))
+               call add_component(subject, axis_directions(:, 1))
             case (drive_y)
-               call record_component(subject, axis_directions(:, 2))
+               call add_component(subject, axis_directions(:, 2))
             case (drive_slide)
-               call record_projection(subject, across=.false.)
+               call add_projection(subject, across=.false.)
             end select
          end associate
-         call close_equation()
+         call complete_equation()
       end do
 
    contains
 
-      !> Adds coordinates of a link to the unfinished equation. Coordinates of the ground are no unknowns.
-      subroutine note(link, in)
+      !> Enters coordinates of a link into the unfinished equation. Coordinates of the ground are no unknowns.
+      subroutine enter(link, in)
          integer, intent(in) :: link         !< its number among all links
          logical, intent(in) :: in(3)        !< which of x, y, phi are in the equation
          integer :: k
@@ -111,18 +111,18 @@ contains
             if (in(k)) n = n + 1
             if (in(k)) c%incidence%unknown(n) = 3*moving(link) - 3 + k
          end do
-      end subroutine note
+      end subroutine enter
 
       !> Adds the coordinates in the component of a point along a fixed direction to the unfinished equation.
-      subroutine record_component(point, direction)
+      subroutine add_component(point, direction)
          integer, intent(in) :: point        !< the number of the point
          real(wp), intent(in) :: direction(2)   !< a unit vector; x is not in the equation if its x is 0, likewise y
 
-         call note(m%points(point)%link, [abs(direction) > zero_component, any(abs(m%points(point)%offset) > 0.0_wp)])
-      end subroutine record_component
+         call enter(m%points(point)%link, [abs(direction) > zero_component, any(abs(m%points(point)%offset) > 0.0_wp)])
+      end subroutine add_component
 
       !> Adds the coordinates in the projection of P - Q of a prismatic pair to the unfinished equation.
-      subroutine record_projection(i, across)
+      subroutine add_projection(i, across)
          integer, intent(in) :: i            !< the number of the pair
          logical, intent(in) :: across       !< on the normal of its guide; otherwise along the guide
          real(wp) :: angle
@@ -130,21 +130,21 @@ contains
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (m%links(m%points(p)%link)%ground) then
                angle = m%links(m%points(p)%link)%position(3) + m%pairs(i)%alpha
-               if (across) call record_component(q, [-sin(angle), cos(angle)])
-               if (.not. across) call record_component(q, [cos(angle), sin(angle)])
+               if (across) call add_component(q, [-sin(angle), cos(angle)])
+               if (.not. across) call add_component(q, [cos(angle), sin(angle)])
             else
-               call note(m%points(p)%link, spread(.true., 1, 3))
-               call record_component(q, [1.0_wp, 1.0_wp])
+               call enter(m%points(p)%link, spread(.true., 1, 3))
+               call add_component(q, [1.0_wp, 1.0_wp])
             end if
          end associate
-      end subroutine record_projection
+      end subroutine add_projection
 
       !> Completes the unfinished equation.
-      subroutine close_equation()
+      subroutine complete_equation()
 
          k = k + 1
          c%incidence%first(k + 1) = n + 1
-      end subroutine close_equation
+      end subroutine complete_equation
    end function new_closure
 
    !> Finds the Assur groups of a mechanism in solving order. The links of the part with too many equations are one
@@ -168,7 +168,7 @@ contains
          of_link(member(first(i):first(i + 1) - 1)) = i
       end do
 
-      order = numbers()
+      order = group_numbers()
       allocate (groups(maxval([0, order])))
       by_group = sorted(order(of_link), size(groups))
       do i = 1, size(groups)
@@ -185,7 +185,7 @@ contains
 
       !> Numbers the groups: for each set of links that wait for one another (sets in the order of `first`) the number
       !> of its group, 0 for ground links. Groups are ordered by depth, then by their first link in the deck.
-      function numbers() result(order)
+      function group_numbers() result(order)
          integer, allocatable :: order(:)
          type(sorted_t) :: by_depth
          integer :: depth(size(first) - 1), i, k, n
@@ -210,7 +210,7 @@ contains
                if (order(component) == 0) order(component) = n
             end associate
          end do
-      end function numbers
+      end function group_numbers
    end function groups_of
 
    !> Finds the links for which each link waits, as the unknowns of its equation; a ground link waits for itself only.

@@ -105,7 +105,7 @@ contains
       do i = 1, size(b%list)
          associate (first => b%list(i)%first_loop, last => b%list(i)%last_loop)
             do m = first, last
-               call measure(b%loops(m), x%loops(m))
+               call find_unit(b%loops(m), x%loops(m))
             end do
 
             ! Loops that are not much smaller than the largest loop get its unit: their rows then have equal weights if
@@ -140,26 +140,26 @@ contains
       !> the size of its given part, in the unit of the equations. The given part counts for the unit too if the loop
       !> has slides of the block, which are as long as the given part lets them be, or a direction that an angle of the
       !> block turns. If only slides balance one another, the unit is not below `least_slide_unit`.
-      subroutine measure(cards, loop)
+      subroutine find_unit(cards, loop)
          type(block_loop_t), intent(in) :: cards       !< the loop's structure
          type(loop_numbers_t), intent(inout) :: loop   !< its numbers: unit and coarse are set; loop_angles: both stay
-         real(wp) :: own, known
+         real(wp) :: own, given
          logical :: slides
          integer :: k
 
          if (cards%kind == loop_angles) return
-         known = max(largest([loop%ground]), largest(x%d(cards%first_vector:cards%first_own - 1)))
+         given = max(largest([loop%ground]), largest(x%d(cards%first_vector:cards%first_own - 1)))
          own = largest(x%d(cards%first_own:cards%last_vector))
          do k = cards%first_slide, cards%last_slide
-            if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
+            if (b%slides(k)%column == 0) given = max(given, x%unit(b%slides(k)%unknown))
          end do
          slides = any(b%slides(cards%first_slide:cards%last_slide)%column > 0)
-         if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = least_slide_unit
+         if (slides .and. own <= 0.0_wp .and. given > 0.0_wp) own = least_slide_unit
          if (own <= 0.0_wp .or. slides .or. (cards%kind == loop_projection .and. cards%orientation_column > 0)) &
-            own = max(own, known)
+            own = max(own, given)
          if (own > 0.0_wp) loop%unit = power_of_two(own)
-         loop%coarse = known
-      end subroutine measure
+         loop%coarse = given
+      end subroutine find_unit
 
       !> Gives the size of the largest component of vectors; 0 without vectors.
       pure real(wp) function largest(vectors)

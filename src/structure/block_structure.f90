@@ -118,7 +118,7 @@ contains
       call fill_block_loops(equations, member, b)
       call move_alloc(member, b%equation)
       b%equations = equations
-      call find_places(b)
+      call find_addresses(b)
    end function new_blocks
 
    !> Fills loops, body vectors and slides of all blocks that are not explicit, but for the addresses of their entries.
@@ -233,7 +233,7 @@ contains
 
    !> Finds the addresses of all entries in the Jacobians, the patterns of the blocks whose Jacobian is best sparse, and
    !> how many entries of each Jacobian are cleared before it is assembled.
-   subroutine find_places(b)
+   subroutine find_addresses(b)
       type(blocks_t), intent(inout) :: b     !< with its loops, body vectors and slides
       type(pattern_t) :: pattern
       ! (columns) Entries come row by row: the last row that has an entry, and the address of that entry.
@@ -251,7 +251,7 @@ contains
                pattern = pattern_t()
                latest = spread(0, 1, shape%n)
                last = latest
-               call place_entries(b%list(i))
+               call address_entries(b%list(i))
                pattern%first = [0, last]
                do c = 1, shape%n
                   pattern%first(c + 1) = pattern%first(c) + last(c)
@@ -260,7 +260,7 @@ contains
                allocate (pattern%row(pattern%first(shape%n + 1)))
                latest = 0
                last = pattern%first(:shape%n)
-               call place_entries(b%list(i))
+               call address_entries(b%list(i))
                if (is_sparse_better(shape%n, size(pattern%row))) then
                   call order_columns(pattern)
                   patterns = patterns + 1
@@ -271,7 +271,7 @@ contains
                end if
             end if
             rows = shape%rows
-            call place_entries(b%list(i))
+            call address_entries(b%list(i))
          end associate
       end do
 
@@ -287,7 +287,7 @@ contains
    contains
 
       !> Finds the addresses of all entries in the Jacobian of a block, row by row.
-      subroutine place_entries(block)
+      subroutine address_entries(block)
          type(block_t), intent(in) :: block   !< the block
          integer :: m, k, side, row
 
@@ -297,22 +297,22 @@ contains
                   row = merge(g%row_x, g%row_y, side == 1)
                   if (row == 0) cycle
                   do k = g%first_own, g%last_vector
-                     call place(row, b%body_vectors(k)%column, b%body_vectors(k)%at(side))
+                     call find_address(row, b%body_vectors(k)%column, b%body_vectors(k)%at(side))
                   end do
                   do k = g%first_slide, g%last_slide
-                     call place(row, b%slides(k)%column, b%slides(k)%at(side))
-                     call place(row, b%slides(k)%orientation_column, b%slides(k)%orientation_at(side))
+                     call find_address(row, b%slides(k)%column, b%slides(k)%at(side))
+                     call find_address(row, b%slides(k)%orientation_column, b%slides(k)%orientation_at(side))
                   end do
                end do
-               call place(g%row_x, g%orientation_column, g%orientation_at)
-               call place(g%row_x, g%less_column, g%less_at)
+               call find_address(g%row_x, g%orientation_column, g%orientation_at)
+               call find_address(g%row_x, g%less_column, g%less_at)
             end associate
          end do
-      end subroutine place_entries
+      end subroutine address_entries
 
       !> Finds the address of an entry in the Jacobian of a block, and completes the pattern if that is being filled.
       !> Entries must come row by row; several may have one address.
-      subroutine place(row, column, at)
+      subroutine find_address(row, column, at)
          integer, intent(in) :: row          !< the number of its row in the block
          integer, intent(in) :: column       !< the number of its column; 0: an earlier block has the unknown
          integer, intent(out) :: at          !< the address among the entries, from 1; 0: there is no column
@@ -329,8 +329,8 @@ contains
             if (allocated(pattern%row)) pattern%row(last(column)) = row - 1
          end if
          at = last(column)
-      end subroutine place
-   end subroutine find_places
+      end subroutine find_address
+   end subroutine find_addresses
 
    !> Tells whether a Jacobian is square and has so many rows that it would be best sparse with few entries.
    elemental logical function may_be_sparse(shape)

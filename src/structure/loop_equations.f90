@@ -234,7 +234,7 @@ contains
       type(equation_numbers_t), intent(in) :: numbers   !< of the equations
       logical, intent(out) :: has_vector(:)  !< (body vectors) as in `equations_t`
       logical, intent(out) :: counts(:, :)   !< (2, slides) as in `equations_t`
-      real(wp) :: asked(2)
+      real(wp) :: axis(2)
       integer :: i, k
 
       has_vector = .true.
@@ -246,12 +246,12 @@ contains
                if (p%vector_orientation(k) > 0 .or. (q%kind == equation_projection .and. q%orientation > 0)) &
                   has_vector(k) = .not. vanishes(numbers%sums, k)
             end do
-            asked = numbers%direction(:, i)
-            if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
-            if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
+            axis = numbers%direction(:, i)
+            if (q%kind == equation_x) axis = [1.0_wp, 0.0_wp]
+            if (q%kind == equation_y) axis = [0.0_wp, 1.0_wp]
             do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
                counts(side_of(q), k) = p%slide_orientation(k) /= q%orientation &
-                  .or. abs(dot_product(asked, numbers%sums%slide_body_vector(:, k))) > 8.0_wp*epsilon(1.0_wp)
+                  .or. abs(dot_product(axis, numbers%sums%slide_body_vector(:, k))) > 8.0_wp*epsilon(1.0_wp)
             end do
          end associate
       end do
@@ -285,11 +285,11 @@ contains
             case (equation_angle)
                ! The angles of two links that turn together cancel.
                if (q%orientation /= q%less) then
-                  call note(q%orientation)
-                  call note(q%less)
+                  call add_unknown(q%orientation)
+                  call add_unknown(q%less)
                end if
             case (equation_slide)
-               call note(orientations + q%orientation)
+               call add_unknown(orientations + q%orientation)
 
             case default
                associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
@@ -301,13 +301,13 @@ contains
 
                   do k = v, w
                      if (equations%has_vector(k) .and. p%vector_orientation(k) /= &
-                        constant) call note(p%vector_orientation(k))
+                        constant) call add_unknown(p%vector_orientation(k))
                   end do
                   do k = s, t
-                     if (p%slide_orientation(k) /= constant) call note(p%slide_orientation(k))
-                     if (equations%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
+                     if (p%slide_orientation(k) /= constant) call add_unknown(p%slide_orientation(k))
+                     if (equations%counts(side_of(q), k)) call add_unknown(orientations + p%slide_number(k))
                   end do
-                  if (q%kind == equation_projection .and. turns) call note(q%orientation)
+                  if (q%kind == equation_projection .and. turns) call add_unknown(q%orientation)
                end associate
             end select
          end associate
@@ -317,7 +317,7 @@ contains
    contains
 
       !> Adds an unknown to equation `i`, once. The angle of the ground's orientation is no unknown.
-      subroutine note(unknown)
+      subroutine add_unknown(unknown)
          integer, intent(in) :: unknown      !< its number; 0: the ground
 
          if (unknown == 0) return
@@ -326,7 +326,7 @@ contains
          n = n + 1
          if (n > size(g%unknown)) g%unknown = [g%unknown, g%unknown]
          g%unknown(n) = unknown
-      end subroutine note
+      end subroutine add_unknown
    end function incidence
 
    !> Fills the axes of links from the numbers of a mechanism.

@@ -185,7 +185,7 @@ contains
       text = ''
       if (report%free == 0) then
          if (report%redundant > 0 .and. m%method /= method_newton) &
-            call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, report))
+            call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//redundancy_text(m, report))
          return
       end if
       if (report%ground == 0) then
@@ -196,7 +196,7 @@ contains
          //whole(report%free)//' ' &
          //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
          'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', report%free == 1)))
-      if (report%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, report))
+      if (report%redundant > 0) call add_line('E102  SET '//whole(set)//': '//redundancy_text(m, report))
       text = text//joined_links(m, report)
       call add_line('E103  SET '//whole(set)//': W = '//whole(report%coordinates)//' COORDINATES LESS R = ' &
          //whole(report%equations)//' EQUATIONS LEAVE S = '//whole(report%degrees_of_freedom) &
@@ -254,7 +254,7 @@ contains
    end function joined_links
 
    !> Names pairs and drives with redundant equations: TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
-   function surplus(m, report) result(text)
+   function redundancy_text(m, report) result(text)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t), intent(in) :: report   !< of `m`, with redundant equations
       character(:), allocatable :: text
@@ -267,5 +267,5 @@ contains
       if (size(pairs) > 0 .and. size(report%many_drives) > 0) text = text//' AND '
       if (size(report%many_drives) > 0) text = text//counted('DRIVE', &
          [(drive_name(m, m%drives(report%many_drives(i))), i=1, size(report%many_drives))])
-   end function surplus
+   end function redundancy_text
 end module structure

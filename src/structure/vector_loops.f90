@@ -153,7 +153,7 @@ contains
       real(wp), intent(in) :: length         !< unit of length of the sums, in the deck's unit
       type(vector_loops_t), intent(in) :: loops   !< on this tree
       type(loop_sums_t), intent(inout) :: sums   !< its lists are allocated; all are set
-      real(wp) :: places(2), place(2), more(2), sign_of
+      real(wp) :: positions(2), position(2), summand(2), sign_of
       integer :: i, k
 
       sums%body_vector = 0.0_wp
@@ -161,28 +161,28 @@ contains
       do i = 1, loops%count
          ! The positions of ground links are summed apart from their points. Between two points of one ground link
          ! they cancel, however large they are, and leave no rounding of their size.
-         places = 0.0_wp
+         positions = 0.0_wp
          do k = loops%first_term(i), loops%first_term(i + 1) - 1
             associate (v => loops%term_vector(k), point => abs(loops%terms(1, k)), pair => abs(loops%terms(2, k)))
                sign_of = real(sign(1, sum(loops%terms(:, k))), wp)
 
-               place = 0.0_wp
+               position = 0.0_wp
                if (point == 0) then
-                  more = sign_of*m%pairs(pair)%offset*guide(m, axes, pair, across=.true.)
+                  summand = sign_of*m%pairs(pair)%offset*guide(m, axes, pair, across=.true.)
                else
-                  more = sign_of*point_offset(m, axes, point)
+                  summand = sign_of*point_offset(m, axes, point)
                   associate (link => m%links(m%points(point)%link))
-                     if (link%ground) place = link%position(:2) - axes%origin
+                     if (link%ground) position = link%position(:2) - axes%origin
                   end associate
-                  places = places + sign_of*place
+                  positions = positions + sign_of*position
                end if
-               sums%body_vector(:, v) = sums%body_vector(:, v) + more
-               sums%largest(v) = max(sums%largest(v), maxval(abs(more)), maxval(abs(place)))
+               sums%body_vector(:, v) = sums%body_vector(:, v) + summand
+               sums%largest(v) = max(sums%largest(v), maxval(abs(summand)), maxval(abs(position)))
             end associate
          end do
 
          do k = loops%first_vector(i), loops%first_vector(i + 1) - 1
-            if (loops%vector_orientation(k) == 0) sums%body_vector(:, k) = sums%body_vector(:, k) + places
+            if (loops%vector_orientation(k) == 0) sums%body_vector(:, k) = sums%body_vector(:, k) + positions
          end do
       end do
 
@@ -229,7 +229,7 @@ contains
       call visit(2, node(m, j), 0)
       do while (meeting < 0)
          do side = 1, 2
-            if (meeting < 0) call go_on(side)
+            if (meeting < 0) call search_level(side)
          end do
       end do
 
@@ -240,7 +240,7 @@ contains
    contains
 
       !> Searches one level more from an end, up to the node at which the two searches meet.
-      subroutine go_on(side)
+      subroutine search_level(side)
          integer, intent(in) :: side         !< 1: from link `i`; 2: from link `j`
          integer :: n, level_end, k, p, link
 
@@ -254,7 +254,7 @@ contains
             end do
          end do
          first(side) = level_end + 1
-      end subroutine go_on
+      end subroutine search_level
 
       !> Records that the search has come to a node; if the search from the other end has been there, both have met.
       subroutine visit(side, n, pair)
