@@ -12,7 +12,7 @@ module block_state
 
    !> Findings from the factors of a block's Jacobian J.
    type :: jacobian_t
-      integer :: sign_of = 1                         !< sign of the determinant, 1 or -1; 1 of an explicit block
+      integer :: sign_of = 1                         !< sign of the determinant; 1 of an explicit block; 0: exactly 0
       real(wp) :: pivot = 1.0_wp                     !< the least |pivot|; 1 of an explicit block
       !> |J^-1| in the maximum norm, or 1/pivot for it where that is small enough; 0 of an explicit block.
       real(wp) :: inverse = 0.0_wp

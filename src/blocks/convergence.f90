@@ -55,7 +55,7 @@ module convergence
       integer :: iterations = 0                !< the largest number of a block
       real(wp) :: residual = 0.0_wp            !< the largest of the last iteration
       real(wp) :: step = 0.0_wp                !< the largest correction of the last iteration
-      integer :: determinant = 0               !< sign of the product of the determinants: 1 or -1; 0: no position
+      integer :: determinant = 0               !< sign of the product of the determinants; 0: exactly 0, or no position
       real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: the least pivot over the largest
       real(wp) :: change = 0.0_wp              !< the largest change of a value from the initial guess
       real(wp) :: kantorovich_ratio = 0.0_wp   !< largest ratio of a change to the distance in which the root is single

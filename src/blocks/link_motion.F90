@@ -184,7 +184,7 @@ contains
       end associate
    end subroutine assign_link_numbers
 
-   !> Gives two numbers as a vector.
+   !> Makes a vector of its two components.
    pure type(vector_t) function vector_of(numbers)
       real(wp), intent(in) :: numbers(2)     !< x and y, in any unit
 

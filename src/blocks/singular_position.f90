@@ -50,8 +50,8 @@ module singular_position
 contains
 
    !> Moves a block from a singular position to the point at which its Jacobian has no inverse, or to the root of its
-   !> equations near this point, by the formulas of the module's head. If neither is a position within rounding, or the
-   !> block is larger than `max_examined_rows`, the block stays.
+   !> equations near this point (formulas in the module's head). The block stays if neither is a position within
+   !> rounding, or if it has more rows than `max_examined_rows`.
    subroutine refine_singular_position(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

@@ -82,10 +82,10 @@ contains
       if (step%ending < step_there) call go_by_value(continuation, t, step, list)
    end subroutine follow
 
-   !> Follows the motion by the value of the one drive that moves, from turn to turn, if the step by time has failed or
-   !> has ended at a position without velocities. Reason: the drive stops or turns near there, and by time the motion
-   !> comes ever closer to the singular position and never across. If the step by value fails too, or several drives
-   !> move, all stays.
+   !> Follows the motion by the value of the one drive that moves, from turn to turn, after a step by time that has
+   !> failed or ended at a position without velocities. Reason: the drive stops or turns near there, and by time the
+   !> motion comes ever closer to the singular position and never across. If the step by value fails too, or several
+   !> drives move, all stays.
    subroutine go_by_value(continuation, t, step, list)
       type(continuation_t), intent(inout) :: continuation   !< of the mechanism
       real(wp), intent(in) :: t                  !< time to which the motion goes, in the deck's unit

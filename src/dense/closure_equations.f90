@@ -121,8 +121,8 @@ contains
       end do
    end subroutine jacobian
 
-   !> Finds the acceleration remainder gamma of (22): the part of the second derivative of the residuals with respect to
-   !> time in addition to J a, with the Jacobian J and the accelerations a.
+   !> Finds the acceleration remainder gamma of (22). The second derivative of the residuals with respect to time is
+   !> J a + gamma, with the Jacobian J and the accelerations a.
    pure subroutine remainder(system, configuration, rates, gamma)
       type(system_t), intent(in) :: system   !< the closure equations
       type(configuration_t), intent(in) :: configuration   !< of the system, not frozen

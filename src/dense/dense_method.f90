@@ -49,7 +49,7 @@ module dense_method
 
 contains
 
-   !> Makes the closure equations ready for the instants of a mechanism.
+   !> Makes the closure equations of a mechanism, with its method, tolerance and predictor, ready for its first instant.
    subroutine make_dense(dense, m)
       type(dense_t), intent(out) :: dense   !< of the mechanism
       type(mechanism_t), intent(in) :: m          !< with as many equations as unknowns

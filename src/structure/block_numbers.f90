@@ -136,10 +136,10 @@ contains
 
    contains
 
-      !> Finds the unit of a loop, the largest power of two not above its largest own body vector, and in loop%coarse
-      !> the size of its given part, in the unit of the equations. The given part counts for the unit too if the loop
-      !> has slides of the block, which are as long as the given part lets them be, or a direction that an angle of the
-      !> block turns. If only slides balance one another, the unit is not below `least_slide_unit`.
+      !> Finds the unit of a loop, the largest power of two not above its largest own body vector. Sets loop%coarse to
+      !> the size of its given part, in the unit of the equations. The given part counts for the unit in two more cases:
+      !> slides of the block are as long as the given part lets them be; an angle of the block turns the direction of a
+      !> projection. If only slides balance one another, the unit is not below `least_slide_unit`.
       subroutine find_unit(cards, loop)
          type(block_loop_t), intent(in) :: cards       !< the loop's structure
          type(loop_numbers_t), intent(inout) :: loop   !< its numbers: unit and coarse are set; loop_angles: both stay

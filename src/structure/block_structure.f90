@@ -231,8 +231,8 @@ contains
       end subroutine add_block_loop
    end subroutine fill_block_loops
 
-   !> Finds the addresses of all entries in the Jacobians, the patterns of the blocks whose Jacobian is best sparse, and
-   !> how many entries of each Jacobian are cleared before it is assembled.
+   !> Finds the addresses of all entries in the Jacobians, and the patterns of the blocks whose Jacobian is best sparse.
+   !> Counts how many entries of each Jacobian are cleared before it is assembled.
    subroutine find_addresses(b)
       type(blocks_t), intent(inout) :: b     !< with its loops, body vectors and slides
       type(pattern_t) :: pattern

@@ -49,7 +49,7 @@ contains
 
    contains
 
-      !> Matches an equation with an unknown.
+      !> Matches an equation with an unknown, in both lists.
       subroutine join(equation, unknown)
          integer, intent(in) :: equation     !< its number
          integer, intent(in) :: unknown      !< its number
@@ -59,7 +59,7 @@ contains
       end subroutine join
 
       !> Looks for a path from an equation to a free unknown. Every equation on the path takes the unknown of the one
-      !> after it, the last one the free unknown. Without such a path nothing changes.
+      !> after it, the last one the free unknown. Without such a path the matching stays.
       subroutine augment(start)
          integer, intent(in) :: start        !< the number of the equation, which has no unknown
          integer :: depth, e, u
