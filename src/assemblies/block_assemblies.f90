@@ -151,7 +151,7 @@ contains
             found%partial = found%partial + 1
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), values) > &
+         if (.not. is_solved(c) .or. largest_difference(values_of(b, i, s), values) > &
             merge(max_singular_move, max_newton_move, ending%is_singular) + moves_per_closing*x%closing) then
             found%failed = found%failed + 1
             return
@@ -159,7 +159,7 @@ contains
 
          values = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(values, found%x(:, k)) <= merge(same_singular_tolerance, same_solution_tolerance, &
+            if (largest_difference(values, found%x(:, k)) <= merge(same_singular_tolerance, same_solution_tolerance, &
                ending%is_singular .or. c%singular)) return
          end do
          found%x = reshape([found%x, values], [size(values), size(found%x, 2) + 1])
@@ -170,12 +170,12 @@ contains
 
       !> Gives the largest difference of two positions of the block, in rad or the unit of the loop; angles without
       !> whole turns.
-      pure real(wp) function apart(first, second)
+      pure real(wp) function largest_difference(first, second)
          real(wp), intent(in) :: first(:), second(:)   !< (unknowns of the block) rad or unit of the loop
 
-         apart = maxval(merge(abs(wrap_angle(first - second)), abs(first - second), &
+         largest_difference = maxval(merge(abs(wrap_angle(first - second)), abs(first - second), &
             own_unknowns(b, i) <= b%orientations))
-      end function apart
+      end function largest_difference
    end subroutine find_positions
 
    !> Finds the unknowns of a block at a solution of its system, and tells whether they are real. If they are not, the

@@ -170,7 +170,7 @@ contains
       integer :: latest(size(found))                    !< the last block below it that iterates; 0: none
       integer :: seen(size(found))                      !< the number of the choice after which its positions were found
       integer, dimension(0:b%unknowns) :: changed       !< the number of the choice that changed it last
-      integer, dimension(0:b%unknowns) :: open          !< 1: its block has no position; otherwise 0
+      integer, dimension(0:b%unknowns) :: missing       !< 1: its block has no position; otherwise 0
       logical :: is_given_up(size(found))               !< no other positions of blocks below it give it a position
       integer, allocatable :: below(:)
       integer :: i, k, solves, choices
@@ -186,7 +186,7 @@ contains
          allocate (found(i)%x(b%list(i)%shape%n, 0), found(i)%distance(0))
       end do
       is_given_up = .false.
-      open = 0
+      missing = 0
       changed = 0
       seen = -1
       spent = 0.0_wp
@@ -206,8 +206,8 @@ contains
 
          else
             associate (own => own_unknowns(b, i))
-               open(own) = 0
-               if (largest_known(b, i, open) == 0) then
+               missing(own) = 0
+               if (largest_known(b, i, missing) == 0) then
                   if (found(i)%chosen == 0) call search_positions()
                   if (last_promising(b, [i], found, latest, seen, changed, spent, limit) == i) then
                      found(i)%chosen = found(i)%chosen + 1
@@ -237,7 +237,7 @@ contains
 
                found(i)%chosen = 0
                spent(i) = spent(i - 1)
-               open(own) = 1
+               missing(own) = 1
                call set_values(b, i, guess%values(own), s)
                i = i + 1
             end associate

@@ -521,8 +521,8 @@ contains
       do k = b%list(i)%first_row, b%list(i)%last_row
          largest = max(largest, abs(values(1:2, b%rows(k)%drive)))
       end do
-      associate (known => unknowns(known_to(b, i)), n => b%list(i)%shape%n)
-         largest = max(largest, [maxval(abs(known%rate)), maxval(abs(known%acceleration))])
+      associate (terms => unknowns(known_to(b, i)), n => b%list(i)%shape%n)
+         largest = max(largest, [maxval(abs(terms%rate)), maxval(abs(terms%acceleration))])
          do = contradict(left_over(n + 1:, 2), largest(1), coarse, closing) &
             .or. contradict(left_over(n + 1:, 1), max(largest(2), largest(1)**2), coarse, closing)
       end associate

@@ -117,13 +117,13 @@ contains
    end function turned
 
    !> Gives the size of the closure error of a pair with x and y of the deck and given angles, in the deck's unit.
-   pure real(wp) function closure_distance(m, k, phi) result(open)
+   pure real(wp) function closure_distance(m, k, phi) result(closure_error)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k               !< the number of the pair
       real(wp), intent(in) :: phi(:)         !< (links) rad
 
       associate (pair => m%pairs(k))
-         open = abs(closure_error_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
+         closure_error = abs(closure_error_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
             turned(m, m%points(pair%point_j)%link, phi)))
       end associate
    end function closure_distance
@@ -213,14 +213,14 @@ contains
       !> vector to such a pair: the closure error of a pair near the link's origin does not depend on its angle.
       pure logical function is_contradicted(angles) result(is)
          real(wp), intent(in) :: angles(:)   !< (links) rad
-         real(wp) :: size_of, open, distance
+         real(wp) :: size_of, closure_error, distance
          integer :: link, k
 
          is = .false.
          do link = 1, size(m%links)
             if (.not. is_far(link)) cycle
             size_of = 0.0_wp
-            open = 0.0_wp
+            closure_error = 0.0_wp
             do k = tree%near%first(link), tree%near%first(link + 1) - 1
                associate (pair => tree%near%member(k), i => m%pairs(tree%near%member(k))%point_i, &
                           j => m%pairs(tree%near%member(k))%point_j)
@@ -229,10 +229,10 @@ contains
                   if (has_guide(m%pairs(pair)%kind)) distance = distance + norm2(way_of(m, m%pairs(pair), &
                      turned(m, m%points(i)%link, angles), turned(m, m%points(j)%link, angles)))
                   size_of = max(size_of, distance)
-                  open = max(open, closure_distance(m, pair, angles))
+                  closure_error = max(closure_error, closure_distance(m, pair, angles))
                end associate
             end do
-            is = is .or. open > open_part*size_of
+            is = is .or. closure_error > open_part*size_of
          end do
       end function is_contradicted
 

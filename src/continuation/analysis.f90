@@ -5,7 +5,7 @@
 !>
 !> After an instant the analysis is in one of five phases. The motion may stand on a singular position (`singular`).
 !>
-!> | phase     | the last instant               | `reach` goes to the next instant by                               |
+!> | phase     | the last instant               | `continue_to_instant` goes to the next instant by                 |
 !> |-----------|--------------------------------|-------------------------------------------------------------------|
 !> | not_begun | none had a position            | begin                                                             |
 !> | at_start  | none had a motion              | begin; rest, if it stands and no drive moves                      |
@@ -145,7 +145,7 @@ contains
          return
       end if
 
-      call reach(analysis, t, step, list)
+      call continue_to_instant(analysis, t, step, list)
       if (step%ending >= step_there) then
          call arrive(analysis, step, list, found)
          if (size(analysis%geometry%cylinders) > 0) call flag_strokes(analysis%geometry%cylinders, found)
@@ -159,7 +159,7 @@ contains
    end subroutine advance
 
    !> Continues the motion to an instant, by the way that belongs to the phase (module's head).
-   subroutine reach(analysis, t, step, list)
+   subroutine continue_to_instant(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis   !< of the mechanism
       real(wp), intent(in) :: t                            !< the time of the instant, in the deck's unit
       type(step_record_t), intent(inout) :: step           !< a new record; then how the step ended
@@ -179,7 +179,7 @@ contains
       else
          call follow(analysis%continuation_t, t, step, list)
       end if
-   end subroutine reach
+   end subroutine continue_to_instant
 
    !> Finds the first motion. From a singular first position more than one motion begins. This motion begins close to
    !> that position, in the nearest assembly: at an instant further away another assembly may be nearest.
@@ -255,7 +255,7 @@ contains
          analysis%left_iterations = analysis%iterations
          analysis%is_left = .true.
       end if
-      call reach(analysis, t, step, list)
+      call continue_to_instant(analysis, t, step, list)
       if (step%ending >= step_there .and. (step%ending == step_rests &
          .or. .not. (analysis%convergence%singular .or. analysis%convergence%rates_inconsistent))) then
          found%t = t
@@ -310,7 +310,7 @@ contains
       end if
 
       if (analysis%has_missed) then
-         call cut(found, -1, flag_not_converged)
+         call mark_known(found, -1, flag_not_converged)
          call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, found%t, analysis%work, &
             analysis%state, found)
          analysis%branch = branch_t()
@@ -392,22 +392,22 @@ contains
       inconsistent = analysis%convergence%ended == ended_inconsistent
       if (inconsistent) then
          ! An equation of a drive may be one that is not satisfied: even links that only drives move have no position.
-         call cut(found, -1, flag_inconsistent)
+         call mark_known(found, -1, flag_inconsistent)
          ! The closure error is measured at the instant itself, not at the end of the last substep.
          if (step%tries > 1) call measure_closure_error(analysis%continuation_t, t)
          analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
-         call cut(found, -1, flag_not_converged)
+         call mark_known(found, -1, flag_not_converged)
          call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, &
             analysis%work, analysis%state, found)
       end if
 
       allocate (list(0))
       if (analysis%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. analysis%follows)) then
-         associate (open => analysis%convergence%open)
-            call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
-               is_angle=open%is_angle, value=open%value &
-               *merge(1.0_wp, analysis%geometry%equations%length*open%unit, open%is_angle))], found)
+         associate (worst => analysis%convergence%open)
+            call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=worst%pair, drive=worst%drive, &
+               is_angle=worst%is_angle, value=worst%value &
+               *merge(1.0_wp, analysis%geometry%equations%length*worst%unit, worst%is_angle))], found)
          end associate
       else
          ahead = t
@@ -448,7 +448,7 @@ contains
       type(motion_t), intent(inout) :: found               !< (links) flagged; only links that drives move are known
       integer :: side
 
-      call cut(found, -1, flag_not_converged)
+      call mark_known(found, -1, flag_not_converged)
       call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, analysis%work, analysis%state, found)
       analysis%convergence = solve_report_t(ended=ended_unsought)
       analysis%branch = branch_t()
@@ -484,15 +484,15 @@ contains
       if (size(analysis%blocks%ratios) > 0) call get_ratios(analysis%blocks, analysis%geometry, analysis%path, &
          analysis%state%is_singular, analysis%state, analysis%work, found)
 
-      call cut(found, 2, flag_none)
+      call mark_known(found, 2, flag_none)
       found%rests = analysis%convergence%singular .and. analysis%follows
       if (found%rests) found%rests = .not. any(moving_drives(analysis%path, found%t, found%t))
       if (found%rests) then
          found%velocity = 0.0_wp
          found%acceleration = 0.0_wp
       else
-         if (analysis%convergence%singular) call cut(found, 0, flag_singular)
-         if (analysis%convergence%rates_inconsistent) call cut(found, 0, flag_inconsistent)
+         if (analysis%convergence%singular) call mark_known(found, 0, flag_singular)
+         if (analysis%convergence%rates_inconsistent) call mark_known(found, 0, flag_inconsistent)
          ! If rates contradict one another, no link has velocities.
          if (found%flag == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
             allocated(analysis%dense), found)
@@ -519,7 +519,7 @@ contains
    end subroutine accept_motion
 
    !> Marks a motion as known up to a derivative, equally for all links.
-   pure subroutine cut(found, known, flag)
+   pure subroutine mark_known(found, known, flag)
       type(motion_t), intent(inout) :: found               !< known and flag are set; flags of links are removed
       integer, intent(in) :: known                         !< the last derivative that is known; -1: no position
       integer, intent(in) :: flag                          !< why no more is known: flag_none, flag_singular, ...
@@ -531,7 +531,7 @@ contains
       end if
       found%known = known
       found%flag = flag
-   end subroutine cut
+   end subroutine mark_known
 
    !> Gives the largest closure error of redundant equations so far, in units of their loops or rad; -1 without
    !> redundant equations.
