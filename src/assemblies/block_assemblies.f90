@@ -133,10 +133,10 @@ contains
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
          if (.not. is_real) found%moves = found%moves .or. ending%is_singular
          if (.not. is_real) return
-         ! The digits of a position do not show from which start its path came.
+         ! Reason for rounding: the digits of a position shall not show from which start its path came.
          values = anint(grid*values)/grid
 
-         ! Half a turn is positive, whatever sign rounding gives it.
+         ! An angle of half a turn becomes positive, whatever sign rounding has left.
          where (f%turns < 0 .and. values <= anint(-grid*pi)/grid) values = -values
          call set_values(b, i, values, s)
          call add_turns(b, x, i, s)

@@ -315,7 +315,7 @@ contains
             tangent = next_tangent
             s = s + h
             if (s >= 1.0_dp - epsilon(1.0_dp)) return
-            ! The error of a step goes with its fifth power.
+            ! The error of a step goes with the fifth power of its length.
             step = h*min(3.0_dp, max(0.5_dp, (aimed_correction/max(correction, epsilon(1.0_dp)))**0.2_dp))
          else
             step = 0.4_dp*h

@@ -214,7 +214,7 @@ contains
       call set_values(b, i, here + away*direction, s)
       call solve_blocks(b, x, b%moving, w, s, convergence)
       if (is_solved(convergence)) call compare(b, x, b%moving, history, s, convergence)
-      ! Only the correction of this block counts: all that builds on it moves by any multiple of that.
+      ! Only the correction of this block counts: blocks that build on it move by any multiple of the correction.
       correction = maxval(abs(values_of(b, i, s) - (here + away*direction)))
       crossed(i) = .not. crossed(i)
       same = .not. any(s%crossed .and. .not. crossed)

@@ -74,7 +74,7 @@ contains
       do i = 1, size(m%links)
          guess%links(:, i) = m%links(i)%position - [x%chain%origin, 0.0_wp]
       end do
-      ! As a section: a function's result would bring its own lower bound.
+      ! Assigned to a section, which keeps the lower bound 0.
       guess%values(:) = estimated_values(m, b, x)
    end subroutine assign_guess
 
@@ -142,7 +142,7 @@ contains
       integer, allocatable :: list(:)
       integer :: i, sweep
 
-      ! Links of one class have one angle, that of its first link.
+      ! Links of one class have one angle, by the first link of the class.
       phi = m%links%position(3)
       classes = sorted(tree%orientation, tree%orientations)
       u = phi

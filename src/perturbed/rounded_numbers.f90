@@ -104,7 +104,7 @@ contains
       do i = 1, size(m%drives)
          do j = 1, 3
             size_of = abs(m%drives(i)%polynomial(j))
-            ! An angle counted from another link is added to that link's, and rounded with it.
+            ! An angle from another link is added to the angle of that link, and the sum is rounded.
             if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
             call put(parameter_t(parameter_drive, i, 0, j), size_of)
          end do

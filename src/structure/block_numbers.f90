@@ -116,7 +116,7 @@ contains
                where (has_lengths) g%coarse = max(1.0_wp, g%coarse/g%unit)
             end associate
 
-            ! Units of the slides that the block solves for: that of the largest loop in which each stands.
+            ! A slide that the block solves for gets the unit of the largest loop that holds the slide.
             do m = first, last
                do k = b%loops(m)%first_slide, b%loops(m)%last_slide
                   if (b%slides(k)%column == 0) cycle

@@ -98,7 +98,7 @@ contains
             if (.not. has_guide(p%kind)) then
                call add(equation_t(equation_x, vector_loop=n, pair=k))
                call add(equation_t(equation_y, vector_loop=n, pair=k))
-               ! From now on paths lead through it.
+               ! From now on paths can lead through this pair.
                s%open(k) = .true.
             else
                call add(equation_t(equation_projection, vector_loop=n, pair=k, &

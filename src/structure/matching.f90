@@ -68,7 +68,7 @@ contains
          e = start
          do
             if (e > 0) then
-               ! On to an equation that this search has not seen.
+               ! Go on to equation `e`, which this search has not seen.
                depth = depth + 1
                path(depth) = e
                next(depth) = incidence%first(e)

@@ -75,7 +75,7 @@ contains
       over = overdetermined(c%incidence, unknown_of, equation_of)
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack([((k + 1)/2, k=1, 2*size(m%pairs))], over(:2*size(m%pairs)))
-      ! The revolute pair of a block is that of its slot.
+      ! The hidden revolute pair of a SLOT card counts as the pair of that card.
       do k = 1, size(f%many_pairs)
          associate (pair => m%pairs(f%many_pairs(k)))
             if (is_hidden(m, pair)) f%many_pairs(k) = findloc(m%pairs%point_j, pair%point_i, dim=1)
