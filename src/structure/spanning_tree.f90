@@ -19,7 +19,7 @@ module spanning_tree
       integer :: slides = 0                 !< how many prismatic pairs are in the tree
       integer :: roots = 0                  !< how many parts of the mechanism no pair joins to the ground
       integer, allocatable :: orientation(:)     !< (links) the number of its orientation
-      integer, allocatable :: by_angle(:)        !< (links) a link after the one at the other end of its `angle_pair`
+      integer, allocatable :: by_angle(:)        !< (links) their numbers: `angle_pair` leads to an earlier link
       integer, allocatable :: angle_pair(:)      !< (links) the prismatic pair that gives its angle; 0: none
       integer, allocatable :: parent_joint(:)    !< (links) the pair to the parent; 0: ground or root
       integer, allocatable :: parent(:)      !< (links) the next link towards the ground; 0: ground or root
