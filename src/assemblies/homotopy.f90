@@ -80,7 +80,7 @@ contains
    !> half of the equations: at it their forms in x are zero, and the forms in y of the other half.
    subroutine make_start(group_size, start)
       integer, intent(in) :: group_size      !< p, unknowns of each group
-      type(path_start_t), intent(out) :: start   !< the start
+      type(path_start_t), intent(out) :: start   !< with charts, equations and solutions
       complex(dp) :: a(0:group_size, 2*group_size), b(0:group_size, 2*group_size)
       integer :: seed, chosen(group_size), paths, j, k
 
@@ -154,7 +154,7 @@ contains
    !> Follows every path of a system from a start. If two paths come to one regular end, one of them has jumped to the
    !> other on the way: the second counts as failed.
    subroutine follow_all(bilinear, start, ends, near)
-      type(bilinear_t), intent(in) :: bilinear   !< the system
+      type(bilinear_t), intent(in) :: bilinear   !< the system whose solutions are found
       type(path_start_t), intent(in) :: start   !< for the system's p
       type(ends_t), intent(out) :: ends         !< the finite ends, and counts
       !> The points of the paths at t = t_near_end as a start, if all come so far; otherwise it stays.
@@ -209,7 +209,7 @@ contains
    !> Follows a path from t = t_near_end to its end, which may be finite, singular or at infinity. The point of a
    !> singular end, or of one at infinity, is the last point that was reached.
    subroutine follow_to_end(bilinear, paths, chart, start, ending, is_infinite, is_done)
-      type(bilinear_t), intent(in) :: bilinear   !< the system
+      type(bilinear_t), intent(in) :: bilinear   !< the system whose solutions are found
       type(paths_t), intent(inout) :: paths     !< of the system
       complex(dp), intent(in) :: chart(:, :)    !< (p, 2) of the start
       complex(dp), intent(in) :: start(:)       !< (2p) z at t = t_near_end

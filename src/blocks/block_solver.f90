@@ -221,7 +221,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                             !< the number of the block
-      type(block_t), intent(in) :: block   !< the block
+      type(block_t), intent(in) :: block   !< its structure
       type(block_numbers_t), intent(in) :: numbers   !< of the block
       logical, intent(in) :: moves                         !< its values are solved for; otherwise they are a position
 

@@ -416,7 +416,7 @@ contains
 
    !> Counts the change points that were passed in a step.
    pure integer function passed_of(step) result(passed)
-      type(step_record_t), intent(in) :: step   !< the step
+      type(step_record_t), intent(in) :: step   !< made or failed
 
       passed = 0
       if (allocated(step%passed)) passed = size(step%passed)

@@ -194,7 +194,7 @@ contains
    !> ratio.
    pure logical function has_tolerances(m, request)
       type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request   !< the request
+      type(request_t), intent(in) :: request   !< of `m`
 
       has_tolerances = allocated(m%tolerances) .and. .not. kinds_of_rows(request%kind)%is_centre &
          .and. request%drive == 0

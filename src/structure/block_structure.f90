@@ -166,7 +166,7 @@ contains
       !> Adds the row of an equation to the block that is being filled, in a loop of its own unless the other component
       !> of its vector loop already has a loop in the block.
       subroutine add_row(equation, row, first_loop)
-         type(equation_t), intent(in) :: equation   !< the equation
+         type(equation_t), intent(in) :: equation   !< of the row
          integer, intent(in) :: row          !< the number of the row in the block
          integer, intent(in) :: first_loop   !< the first loop of the block, among all loops
 
@@ -288,7 +288,7 @@ contains
 
       !> Finds the addresses of all entries in the Jacobian of a block, row by row.
       subroutine address_entries(block)
-         type(block_t), intent(in) :: block   !< the block
+         type(block_t), intent(in) :: block   !< not explicit, with its loops
          integer :: m, k, side, row
 
          do m = block%first_loop, block%last_loop

@@ -156,7 +156,7 @@ contains
 
       !> Appends an equation to the list.
       subroutine add(equation)
-         type(equation_t), intent(in) :: equation   !< the equation
+         type(equation_t), intent(in) :: equation   !< to be appended
 
          e%count = e%count + 1
          e%list(e%count) = equation
@@ -259,7 +259,7 @@ contains
 
    !> Gives the row of `counts` that belongs to an equation: 2 for the y of a loop, otherwise 1.
    pure integer function side_of(equation)
-      type(equation_t), intent(in) :: equation   !< the equation
+      type(equation_t), intent(in) :: equation   !< of kind x, y or projection
 
       side_of = merge(2, 1, equation%kind == equation_y)
    end function side_of
