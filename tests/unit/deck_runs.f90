@@ -3,10 +3,11 @@ module deck_runs
    use kinds, only: wp
    use command_line, only: options_t, out_listing, out_csv, out_log
    use job, only: run_job
+   use deck_samples, only: sample
    use written, only: taken
    implicit none
    private
-   public :: run_t, run_cards, remarks, csv_cell, csv_number, taken, slider, pushed_slider
+   public :: run_t, run_cards, lines_of, remarks, csv_cell, csv_number, taken, crank_with, slider, pushed_slider
 
    character(*), parameter :: deck_file = 'unit_test_run.tmp', listing_file = 'unit_test_run_listing.tmp', &
       csv_file = 'unit_test_run_csv.tmp', log_file = 'unit_test_run_log.tmp', other_file = 'unit_test_run_other.tmp'
@@ -52,6 +53,19 @@ contains
       open (newunit=unit, file=deck_file)
       close (unit, status='delete')
    end subroutine run_cards
+
+   !> The lines of the listing of `cards`, from its structure on, from the first one that begins with `first` to the one before that
+   !> which begins with `last`.
+   function lines_of(cards, first, last) result(text)
+      character(*), intent(in) :: cards(:), first, last
+      character(:), allocatable :: text
+      type(run_t) :: r
+
+      call run_cards(cards, r)
+      text = r%listing(index(r%listing, nl//' STRU'):)
+      text = text(index(text, nl//first) + 1:)
+      text = text(:index(text, nl//last))
+   end function lines_of
 
    !> The lines of the listing that begin with three stars or three dashes, each with its end; not the one that tells what
    !> `?` is, nor that drives rest, as many do on purpose.
@@ -127,6 +141,15 @@ contains
       comma = index(cell, ',')
       if (comma > 0) cell = cell(:comma - 1)
    end function cell_of
+
+   !> The crank of the sample, pinned to the base at its origin, with `more` cards, and END.
+   pure function crank_with(more) result(cards)
+      character(80), intent(in) :: more(:)
+      character(80) :: cards(6 + size(more)), all_cards(8)
+
+      all_cards = sample()
+      cards = [all_cards(:5), more, all_cards(8:)]
+   end function crank_with
 
    !> The central crank-slider, crank 1 and rod 3, in RAD: its estimated angles; without drive, TIME and END.
    pure function slider(crank, rod) result(cards)
