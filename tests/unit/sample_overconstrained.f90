@@ -47,26 +47,13 @@ contains
    function three_cranks(phi, excess) result(m)
       real(wp), intent(in) :: phi, excess
       type(mechanism_t) :: m
-      type(link_t) :: link
       integer :: i
 
       m = parallelogram(phi)
-      link%name = 'THIRD'
-      link%position = [1.0_wp, 1.0_wp, phi]
-      m%links = [m%links, link]
+      m%links = [m%links, link_t('THIRD', position=[1.0_wp, 1.0_wp, phi])]
       m%points = [m%points, point_t('C0', 1, [1.0_wp, 1.0_wp]), point_t('C', 3, [1.0_wp, 1.0_wp]), &
                   point_t('C1', 5, [0.0_wp, 0.0_wp]), point_t('C2', 5, [2.0_wp + excess, 0.0_wp])]
-      m%pairs = [m%pairs, revolute('C0', 9, 11), revolute('C', 10, 12)]
+      m%pairs = [m%pairs, pair_t(pair_revolute, 'C0', 9, 11), pair_t(pair_revolute, 'C', 10, 12)]
       m%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
    end function three_cranks
-
-   type(pair_t) function revolute(name, i, j)
-      character(*), intent(in) :: name
-      integer, intent(in) :: i, j
-
-      revolute%name = name
-      revolute%kind = pair_revolute
-      revolute%point_i = i
-      revolute%point_j = j
-   end function revolute
 end module sample_overconstrained
