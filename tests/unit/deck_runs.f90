@@ -85,14 +85,16 @@ contains
       end do
    end function remarks
 
-   !> The cell of `column` in the row of instant `step` and of `name`; '?' without such a row.
-   function csv_cell(r, step, name, column) result(cell)
+   !> The cell of `column` in the row of instant `step` and of `name`, if `kind` is given in that of this kind; '?' without such a row.
+   function csv_cell(r, step, name, column, kind) result(cell)
       type(run_t), intent(in) :: r
       integer, intent(in) :: step
       character(*), intent(in) :: name, column
+      character(*), intent(in), optional :: kind
       character(:), allocatable :: cell
       character(12) :: number
       integer :: first, last, k, i
+      logical :: found
 
       cell = '?'
       write (number, '(i0)') step
@@ -100,30 +102,29 @@ contains
       first = 1
       do while (first <= len(r%csv))
          last = first + index(r%csv(first:), nl) - 1
-         if (has_cells(r%csv(first:last - 1), trim(number), name)) cell = cell_of(r%csv(first:last - 1), k)
+         associate (line => r%csv(first:last - 1))
+            found = cell_of(line, 1) == trim(number) .and. cell_of(line, 4) == name
+            if (present(kind)) found = found .and. cell_of(line, 3) == kind
+            if (found) cell = cell_of(line, k)
+         end associate
          first = last + 1
       end do
    end function csv_cell
 
    !> The same as a number; huge where it is empty.
-   real(wp) function csv_number(r, step, name, column) result(value)
+   real(wp) function csv_number(r, step, name, column, kind) result(value)
       type(run_t), intent(in) :: r
       integer, intent(in) :: step
       character(*), intent(in) :: name, column
+      character(*), intent(in), optional :: kind
       character(:), allocatable :: cell
       integer :: status
 
-      cell = csv_cell(r, step, name, column)
+      cell = csv_cell(r, step, name, column, kind)
       value = huge(value)
       if (len(cell) > 0) read (cell, *, iostat=status) value
       if (len(cell) > 0 .and. status /= 0) value = huge(value)
    end function csv_number
-
-   logical function has_cells(line, step, name)
-      character(*), intent(in) :: line, step, name
-
-      has_cells = cell_of(line, 1) == step .and. cell_of(line, 4) == name
-   end function has_cells
 
    !> Cell number `k` of a line, from 0 on.
    function cell_of(line, k) result(cell)
