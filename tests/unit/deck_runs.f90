@@ -3,7 +3,7 @@ module deck_runs
    use kinds, only: wp
    use command_line, only: options_t, out_listing, out_csv, out_log
    use job, only: run_job
-   use deck_samples, only: sample
+   use deck_samples, only: row, sample
    use written, only: taken
    implicit none
    private
@@ -157,36 +157,20 @@ contains
       character(*), intent(in) :: crank, rod
       character(80) :: cards(16)
 
-      cards = [character(80) :: &
-         'UNITS   M       RAD     S', &
-         'GROUND  BASE', &
-         'LINK    CRANK                   0.0             0.0             '//crank, &
-         'LINK    ROD                     0.9             0.4             '//rod, &
-         'LINK    PISTON                  3.5             0.0             0.0', &
-         'POINT   O       BASE', &
-         'POINT   GUIDE   BASE', &
-         'POINT   C0      CRANK', &
-         'POINT   C1      CRANK           1.0', &
-         'POINT   R0      ROD', &
-         'POINT   R1      ROD             3.0', &
-         'POINT   S       PISTON', &
-         'REVOLUTEO       C0      PO', &
-         'REVOLUTEC1      R0      PC', &
-         'REVOLUTER1      S       PR', &
-         'PRISM   GUIDE   S       PS']
+      cards = [row('UNITS', 'M', 'RAD', 'S'), row('GROUND', 'BASE'), row('LINK', 'CRANK', r1='0.0', r2='0.0', r3=crank), &
+         row('LINK', 'ROD', r1='0.9', r2='0.4', r3=rod), row('LINK', 'PISTON', r1='3.5', r2='0.0', r3='0.0'), &
+         row('POINT', 'O', 'BASE'), row('POINT', 'GUIDE', 'BASE'), row('POINT', 'C0', 'CRANK'), &
+         row('POINT', 'C1', 'CRANK', r1='1.0'), row('POINT', 'R0', 'ROD'), row('POINT', 'R1', 'ROD', r1='3.0'), &
+         row('POINT', 'S', 'PISTON'), row('REVOLUTE', 'O', 'C0', 'PO'), row('REVOLUTE', 'C1', 'R0', 'PC'), &
+         row('REVOLUTE', 'R1', 'S', 'PR'), row('PRISM', 'GUIDE', 'S', 'PS')]
    end function slider
 
    !> The same, moved by its piston: x = `x` + `rate` t, by METHOD `method`, at `steps` + 1 instants from 0 to `t1`.
    pure function pushed_slider(crank, rod, x, rate, steps, t1, method) result(cards)
       character(*), intent(in) :: crank, rod, x, rate, steps, t1, method
-      character(80) :: cards(21), drive, time
+      character(80) :: cards(21)
 
-      drive = 'DRIVE   X       S'
-      drive(33:48) = x
-      drive(49:64) = rate
-      time = 'TIME    '//steps
-      time(33:48) = '0.0'
-      time(49:64) = t1
-      cards = [character(80) :: slider(crank, rod), drive, time, 'PRINT   LINKS', 'METHOD  '//method, 'END']
+      cards = [slider(crank, rod), row('DRIVE', 'X', 'S', r1=x, r2=rate), row('TIME', steps, r1='0.0', r2=t1), &
+         row('PRINT', 'LINKS'), row('METHOD', method), row('END')]
    end function pushed_slider
 end module deck_runs
