@@ -3,9 +3,8 @@
 module deck_damage
    use kinds, only: wp
    use dice, only: dice_t, new_dice, throw, chance
-   use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
-      drop_line, find_cards, add_note
-   use deck_changes, only: pick, is_degrees
+   use deck_text, only: deck_text_t, line_length, name_of, label, set_label, real_field, set_real, set_full, &
+      insert_line, drop_line, find_cards, any_card, is_degrees, add_note
    use drawn_decks, only: drawn_deck
    use deck_mutations, only: prepare, change_gently, max_steps
    use deck_questions, only: ask, lengthen_names, write_in_polish
@@ -33,51 +32,52 @@ contains
    !> The deck of seed number `seed`, made from one of `sets`, or a drawing of its own. Of ten decks seven are changed
    !> gently, two go to the limits, one is damaged, by a mixture of everything.
    function deck_of_seed(sets, seed) result(d)
-      type(draft_t), intent(in) :: sets(:)
+      type(deck_text_t), intent(in) :: sets(:)
       integer, intent(in) :: seed
-      type(draft_t) :: d
-      type(dice_t) :: r
+      type(deck_text_t) :: d
+      type(dice_t) :: dice
       integer :: manner, i, n
+      logical :: is_drawn
 
-      r = new_dice(seed)
-      d = sets(throw(r, size(sets)))
-      if (chance(r, 0.3_wp)) d = drawn_deck(r)
-      call prepare(d, r)
-      manner = throw(r, 10)
-      n = merge(throw(r, 2), throw(r, 8), chance(r, 0.6_wp))
+      dice = new_dice(seed)
+      d = sets(throw(dice, size(sets)))
+      is_drawn = chance(dice, 0.3_wp)
+      d%dice = dice
+      if (is_drawn) d = drawn_deck(dice)
+      call prepare(d)
+      manner = throw(d%dice, 10)
+      n = merge(throw(d%dice, 2), throw(d%dice, 8), chance(d%dice, 0.6_wp))
       do i = 1, n
-         call change_gently(d, r)
+         call change_gently(d)
       end do
-      if (chance(r, 0.3_wp)) call ask(d, r)
-      if (chance(r, 0.1_wp)) call lengthen_names(d)
-      if (chance(r, 0.1_wp)) call write_in_polish(d)
+      if (chance(d%dice, 0.3_wp)) call ask(d)
+      if (chance(d%dice, 0.1_wp)) call lengthen_names(d)
+      if (chance(d%dice, 0.1_wp)) call write_in_polish(d)
       if (manner > 7) then
-         do i = 1, throw(r, 3)
-            call change_to_limits(d, r)
+         do i = 1, throw(d%dice, 3)
+            call change_to_limits(d)
          end do
       end if
       if (manner > 9) then
-         do i = 1, throw(r, 3)
+         do i = 1, throw(d%dice, 3)
             if (size(d%line) == 0) exit
-            if (chance(r, 0.3_wp)) then
-               call slip(d, r)
+            if (chance(d%dice, 0.3_wp)) then
+               call slip(d)
             else
-               call damage(d, r)
+               call damage(d)
             end if
          end do
       end if
       call limit_steps(d)
-      if (chance(r, 0.97_wp)) call limit_way(d)
-      do while (len(d%notes) > 0)
-         i = scan(d%notes, new_line('a'), back=.true.)
-         call insert_line(d, 1, '$ '//d%notes(i + 1:))
-         d%notes = d%notes(:i - 1)
+      if (chance(d%dice, 0.97_wp)) call limit_way(d)
+      do i = size(d%notes), 1, -1
+         call insert_line(d, 1, '$ '//d%notes(i))
       end do
    end function deck_of_seed
 
    !> A deck that asks for very many steps says nothing more than one that asks for some.
    subroutine limit_steps(d)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer :: i, n, status
 
       do i = 1, size(d%line)
@@ -89,7 +89,7 @@ contains
 
    !> Nor one whose drives go very far, which takes seconds: its times are brought nearer to zero, mostly.
    subroutine limit_way(d)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer, allocatable :: cards(:)
       integer :: i, k
       real(wp) :: t, rate, low, high, longest
@@ -132,7 +132,7 @@ contains
 
    !> About the largest rate of any drive up to the time `t`.
    subroutine find_fastest(d, t, rate)
-      type(draft_t), intent(in) :: d
+      type(deck_text_t), intent(in) :: d
       real(wp), intent(in) :: t
       real(wp), intent(out) :: rate
       integer :: i
@@ -155,53 +155,52 @@ contains
    end subroutine find_fastest
 
    !> One change to the limits of numbers or of structure.
-   subroutine change_to_limits(d, r)
-      type(draft_t), intent(inout) :: d
-      type(dice_t), intent(inout) :: r
+   subroutine change_to_limits(d)
+      type(deck_text_t), intent(inout) :: d
       integer :: i, j, k
 
-      select case (throw(r, 11))
+      select case (throw(d%dice, 11))
       case (1:4)
-         i = pick(r, find_cards(d, with_reals))
-         k = throw(r, 3)
-         if (i > 0) d%line(i)(16*k + 17:16*k + 32) = extremes(throw(r, size(extremes)))
+         i = any_card(d, with_reals)
+         k = throw(d%dice, 3)
+         if (i > 0) d%line(i)(16*k + 17:16*k + 32) = extremes(throw(d%dice, size(extremes)))
          if (i > 0) call add_note(d, 'EXTREME '//d%line(i)(1:16))
       case (5)
-         i = pick(r, find_cards(d, with_labels))
-         j = pick(r, find_cards(d, with_labels))
-         if (i > 0) call set_label(d%line(i), throw(r, 3), label(d%line(j), throw(r, 3)))
+         i = any_card(d, with_labels)
+         j = any_card(d, with_labels)
+         if (i > 0) call set_label(d%line(i), throw(d%dice, 3), label(d%line(j), throw(d%dice, 3)))
          call add_note(d, 'LABELS EXCHANGED')
       case (6)
-         i = throw(r, size(d%line))
+         i = throw(d%dice, size(d%line))
          if (name_of(d%line(i)) /= 'END') call drop_line(d, i)
          call add_note(d, 'CARD DROPPED')
       case (7)
-         i = throw(r, size(d%line))
-         call insert_line(d, throw(r, i), d%line(i))
+         i = throw(d%dice, size(d%line))
+         call insert_line(d, throw(d%dice, i), d%line(i))
          call add_note(d, 'CARD DOUBLED')
       case (8)
-         i = pick(r, find_cards(d, ['POINT   ']))
-         j = pick(r, find_cards(d, ['POINT   ']))
+         i = any_card(d, ['POINT   '])
+         j = any_card(d, ['POINT   '])
          if (i > 0) d%line(i)(33:) = d%line(j)(33:)
          call add_note(d, 'EQUAL POINTS')
       case (9)
-         i = pick(r, find_cards(d, ['POINT   ']))
+         i = any_card(d, ['POINT   '])
          if (i > 0) call empty_link(d, label(d%line(i), 2))
       case (10)
-         i = pick(r, find_cards(d, ['UNITS   ']))
-         if (i > 0) call set_label(d%line(i), 2, trim(merge('RAD', 'DEG', chance(r, 0.5_wp))))
+         i = any_card(d, ['UNITS   '])
+         if (i > 0) call set_label(d%line(i), 2, trim(merge('RAD', 'DEG', chance(d%dice, 0.5_wp))))
          call add_note(d, 'UNITS')
       case default
-         i = pick(r, find_cards(d, with_reals))
-         k = throw(r, 3)
-         if (i > 0) call set_full(d, i, k, 10.0_wp**(throw(r, 600) - 300))
+         i = any_card(d, with_reals)
+         k = throw(d%dice, 3)
+         if (i > 0) call set_full(d, i, k, 10.0_wp**(throw(d%dice, 600) - 300))
          if (i > 0) call add_note(d, 'MAGNITUDE OF '//d%line(i)(1:16))
       end select
    end subroutine change_to_limits
 
    !> All points of one link at its origin: a link without length.
    subroutine empty_link(d, link)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       character(*), intent(in) :: link
       integer :: i
 
@@ -212,18 +211,17 @@ contains
    end subroutine empty_link
 
    !> One damage of the text.
-   subroutine damage(d, r)
-      type(draft_t), intent(inout) :: d
-      type(dice_t), intent(inout) :: r
+   subroutine damage(d)
+      type(deck_text_t), intent(inout) :: d
       integer :: i, j, c, k
       character(line_length) :: line
 
-      i = throw(r, size(d%line))
-      j = throw(r, size(d%line))
-      c = throw(r, 80)
-      k = throw(r, len(bytes))
+      i = throw(d%dice, size(d%line))
+      j = throw(d%dice, size(d%line))
+      c = throw(d%dice, 80)
+      k = throw(d%dice, len(bytes))
       line = d%line(i)
-      select case (throw(r, 12))
+      select case (throw(d%dice, 12))
       case (1); d%line(i)(c:c) = bytes(k:k)
       case (2); d%line(i) = line(:c - 1)//line(c + 1:)
       case (3); d%line(i) = line(:c - 1)//bytes(k:k)//line(c:)
@@ -231,7 +229,7 @@ contains
       case (5); d%line(i)(c + 60:) = 'PAST THE END'
       case (6); d%line([i, j]) = d%line([j, i])
       case (7)
-         c = throw(r, 9)
+         c = throw(d%dice, 9)
          c = merge(8*c - 7, 16*c - 47, c < 5)
          d%line(i)(c:c + 15) = d%line(j)(c:c + 15)
       case (8)
@@ -248,25 +246,24 @@ contains
 
    !> One slip of a new user: a decimal comma, numbers that touch, a name with one letter wrong or of nine letters, text
    !> in the wrong columns, or the whole deck in free format.
-   subroutine slip(d, r)
-      type(draft_t), intent(inout) :: d
-      type(dice_t), intent(inout) :: r
+   subroutine slip(d)
+      type(deck_text_t), intent(inout) :: d
       integer :: i, k, c
 
-      i = throw(r, size(d%line))
+      i = throw(d%dice, size(d%line))
       associate (line => d%line(i))
-         select case (throw(r, 8))
+         select case (throw(d%dice, 8))
          case (1)
             c = index(line(33:80), '.')
             if (c > 0) line(32 + c:32 + c) = ','
          case (2)
-            c = merge(33, 49, chance(r, 0.5_wp))
-            line(c:c + 16 + throw(r, 8)) = '0.52359877559829910.000000'
+            c = merge(33, 49, chance(d%dice, 0.5_wp))
+            line(c:c + 16 + throw(d%dice, 8)) = '0.52359877559829910.000000'
          case (3:5)
             ! A letter of the name of the card or of a label: wrong, left out, added, or exchanged with the next one.
-            k = 8*throw(r, 4)
-            c = k - 8 + throw(r, max(1, len_trim(line(k - 7:k))))
-            select case (throw(r, 4))
+            k = 8*throw(d%dice, 4)
+            c = k - 8 + throw(d%dice, max(1, len_trim(line(k - 7:k))))
+            select case (throw(d%dice, 4))
             case (1)
                line(c:c) = 'Q'
             case (2)
@@ -277,11 +274,11 @@ contains
                line(c:min(c + 1, k)) = line(min(c + 1, k):min(c + 1, k))//line(c:c)
             end select
          case (6)
-            k = 8*throw(r, 3)
-            line = line(:k)//'NINELETRS'//line(k + 8 + throw(r, 2):)
+            k = 8*throw(d%dice, 3)
+            line = line(:k)//'NINELETRS'//line(k + 8 + throw(d%dice, 2):)
          case (7)
-            c = 8*throw(r, 9)
-            line = line(:c)//repeat(' ', throw(r, 16))//line(c + 1:)
+            c = 8*throw(d%dice, 9)
+            line = line(:c)//repeat(' ', throw(d%dice, 16))//line(c + 1:)
          case default
             do i = 1, size(d%line)
                d%line(i) = single_blanks(trim(d%line(i)))

@@ -4,16 +4,13 @@
 module drawn_decks
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between, magnitude
-   use deck_draft, only: draft_t, label, set_label, insert_line, find_cards
+   use plane_vectors, only: pi
+   use deck_text, only: deck_text_t, line_length, label, set_label, insert_line, find_cards
    implicit none
    private
    public :: drawn_deck
 
-   real(wp), parameter :: pi = 3.141592653589793_wp
-
-   type :: drawing_t
-      type(draft_t) :: deck
-      type(dice_t) :: r
+   type, extends(deck_text_t) :: drawing_t
       character(8), allocatable :: links(:)      !< names; the first is the ground
       real(wp) :: size_of = 1.0_wp               !< of the mechanism
       real(wp) :: turn = 2.0_wp*pi               !< in the deck's unit of angles
@@ -23,22 +20,22 @@ module drawn_decks
 
 contains
 
-   !> A deck by the dice `r`.
-   function drawn_deck(r) result(d)
-      type(dice_t), intent(inout) :: r
-      type(draft_t) :: d
+   !> A deck by the `dice`, which it keeps.
+   function drawn_deck(dice) result(d)
+      type(dice_t), intent(in) :: dice
+      type(deck_text_t) :: d
       type(drawing_t) :: w
       integer :: k
 
-      w%r = r
-      allocate (w%deck%line(0))
-      w%deck%notes = 'DRAWN'
+      w%dice = dice
+      allocate (w%line(0))
+      w%notes = [character(line_length) :: 'DRAWN']
       w%links = ['BASE    ']
-      w%size_of = 10.0_wp**throw(w%r, 3)/10.0_wp
-      if (chance(w%r, 0.5_wp)) w%turn = 360.0_wp
+      w%size_of = 10.0_wp**throw(w%dice, 3)/10.0_wp
+      if (chance(w%dice, 0.5_wp)) w%turn = 360.0_wp
       call add_card(w, 'UNITS', 'MM', trim(merge('DEG', 'RAD', w%turn > 100.0_wp)), 'S')
       call add_card(w, 'GROUND', 'BASE')
-      select case (throw(w%r, 10))
+      select case (throw(w%dice, 10))
       case (1:5)
          call draw_crank(w)
       case (6:8)
@@ -46,8 +43,8 @@ contains
       case default
          call draw_parallelogram(w)
       end select
-      do k = 1, throw(w%r, 3) - 1
-         select case (throw(w%r, 8))
+      do k = 1, throw(w%dice, 3) - 1
+         select case (throw(w%dice, 8))
          case (1:3)
             call draw_dyad(w)
          case (4:5)
@@ -61,8 +58,7 @@ contains
       call draw_instants(w)
       call add_card(w, 'PRINT', 'ALL')
       call add_card(w, 'END')
-      d = w%deck
-      r = w%r
+      d = w%deck_text_t
    end function drawn_deck
 
    !> A crank that turns, as drawn or from any angle.
@@ -92,10 +88,10 @@ contains
       boom = new_link(w)
       pivot = new_joint(w, 'BASE', boom, anywhere(w))
       call draw_cylinder(w, 'BASE', boom, anywhere(w), anywhere(w), pair)
-      rate = w%size_of*between(w%r, -0.5_wp, 0.5_wp)
-      if (chance(w%r, 0.8_wp)) call add_card(w, 'DRIVE', 'SLIDE', pair, x2=rate)
-      if (size(find_cards(w%deck, ['DRIVE   '])) == 0) &
-         call add_card(w, 'DRIVE', 'SLIDE', pair, x1=w%size_of*between(w%r, -0.2_wp, 2.5_wp), x2=rate)
+      rate = w%size_of*between(w%dice, -0.5_wp, 0.5_wp)
+      if (chance(w%dice, 0.8_wp)) call add_card(w, 'DRIVE', 'SLIDE', pair, x2=rate)
+      if (size(find_cards(w%deck_text_t, ['DRIVE   '])) == 0) &
+         call add_card(w, 'DRIVE', 'SLIDE', pair, x1=w%size_of*between(w%dice, -0.2_wp, 2.5_wp), x2=rate)
    end subroutine draw_boom
 
    !> Three equal bars on a coupler, drawn in coordinates that are rounded; a closing tolerance lets them run.
@@ -117,10 +113,10 @@ contains
          if (k == 1) call drive_angle(w, bar)
       end do
       method = [character(8) :: 'DENSE', 'NEWTON', '']
-      k = min(3, throw(w%r, 20))
+      k = min(3, throw(w%dice, 20))
       call add_card(w, 'METHOD', method(k))
-      if (k > 1 .and. chance(w%r, 0.9_wp)) &
-         write (w%deck%line(size(w%deck%line))(49:64), '(es16.8e3)') 10.0_wp**between(w%r, -4.0_wp, -2.0_wp)
+      if (k > 1 .and. chance(w%dice, 0.9_wp)) &
+         write (w%line(size(w%line))(49:64), '(es16.8e3)') 10.0_wp**between(w%dice, -4.0_wp, -2.0_wp)
    end subroutine draw_parallelogram
 
    !> Two bars between two links.
@@ -159,15 +155,16 @@ contains
       eye = new_joint(w, rod, link, q)
       length = norm2(q - p)
       name = new_name(w, 'RAM')
-      select case (throw(w%r, 4))
+      select case (throw(w%dice, 4))
       case (1)
          call add_card(w, 'CYLINDER', foot, eye, name)
       case (2)
-         call add_card(w, 'CYLINDER', foot, eye, name, x1=length*between(w%r, 0.5_wp, 1.02_wp))
+         call add_card(w, 'CYLINDER', foot, eye, name, x1=length*between(w%dice, 0.5_wp, 1.02_wp))
       case (3)
-         call add_card(w, 'CYLINDER', foot, eye, name, x2=length*between(w%r, 0.98_wp, 1.6_wp))
+         call add_card(w, 'CYLINDER', foot, eye, name, x2=length*between(w%dice, 0.98_wp, 1.6_wp))
       case default
-         call add_card(w, 'CYLINDER', foot, eye, name, length*between(w%r, 0.5_wp, 1.0_wp), length*between(w%r, 1.0_wp, 1.6_wp))
+         call add_card(w, 'CYLINDER', foot, eye, name, length*between(w%dice, 0.5_wp, 1.0_wp), &
+            length*between(w%dice, 1.0_wp, 1.6_wp))
       end select
       if (present(pair)) pair = name
    end subroutine draw_cylinder
@@ -181,7 +178,7 @@ contains
       other = other_link(w, 'BASE')
       arm = new_link(w)
       joint = new_joint(w, arm, one, anywhere(w))
-      if (chance(w%r, 0.5_wp)) then
+      if (chance(w%dice, 0.5_wp)) then
          call draw_pin(w, arm, other)
       else
          call draw_pin(w, other, arm)
@@ -197,8 +194,9 @@ contains
       p = new_point(w, base)
       q = new_point(w, link)
       name = new_name(w, 'S')
-      call add_card(w, 'SLOT', p, q, name, w%turn*between(w%r, -0.5_wp, 0.5_wp))
-      if (chance(w%r, 0.2_wp)) write (w%deck%line(size(w%deck%line))(49:64), '(f16.4)') w%size_of*between(w%r, -0.2_wp, 0.2_wp)
+      call add_card(w, 'SLOT', p, q, name, w%turn*between(w%dice, -0.5_wp, 0.5_wp))
+      if (chance(w%dice, 0.2_wp)) &
+         write (w%line(size(w%line))(49:64), '(f16.4)') w%size_of*between(w%dice, -0.2_wp, 0.2_wp)
       call change_later(w, 'SLOT', '')
    end subroutine draw_pin
 
@@ -219,7 +217,7 @@ contains
       call draw_bar(w, rod, ends, q - p)
       point = new_point(w, base)
       guide = new_name(w, 'G')
-      call add_card(w, 'PRISM', point, ends(2), guide, w%turn*between(w%r, -0.5_wp, 0.5_wp))
+      call add_card(w, 'PRISM', point, ends(2), guide, w%turn*between(w%dice, -0.5_wp, 0.5_wp))
    end subroutine draw_slider
 
    !> Axes and a length along the bar of `link`, each by chance.
@@ -231,18 +229,19 @@ contains
       integer, allocatable :: cards(:)
       integer :: k
 
-      if (chance(w%r, 0.5_wp)) then
-         cards = find_cards(w%deck, ['LINK    '])
+      if (chance(w%dice, 0.5_wp)) then
+         cards = find_cards(w%deck_text_t, ['LINK    '])
          do k = 1, size(cards)
-            if (label(w%deck%line(cards(k)), 1) /= link) cycle
-            call set_label(w%deck%line(cards(k)), 2, joint(1))
-            call set_label(w%deck%line(cards(k)), 3, joint(2))
-            if (chance(w%r, 0.2_wp)) write (w%deck%line(cards(k))(65:80), '(f16.4)') w%turn*between(w%r, -0.5_wp, 0.5_wp)
+            if (label(w%line(cards(k)), 1) /= link) cycle
+            call set_label(w%line(cards(k)), 2, joint(1))
+            call set_label(w%line(cards(k)), 3, joint(2))
+            if (chance(w%dice, 0.2_wp)) &
+               write (w%line(cards(k))(65:80), '(f16.4)') w%turn*between(w%dice, -0.5_wp, 0.5_wp)
          end do
       end if
-      if (chance(w%r, 0.4_wp)) return
-      call add_card(w, 'LENGTH', joint(1), joint(2), merge(link, repeat(' ', len(link)), chance(w%r, 0.1_wp)), &
-         norm2(way)*between(w%r, 0.95_wp, 1.05_wp))
+      if (chance(w%dice, 0.4_wp)) return
+      call add_card(w, 'LENGTH', joint(1), joint(2), merge(link, repeat(' ', len(link)), chance(w%dice, 0.1_wp)), &
+         norm2(way)*between(w%dice, 0.95_wp, 1.05_wp))
       call change_later(w, 'LENGTH', '')
    end subroutine draw_bar
 
@@ -254,9 +253,10 @@ contains
 
       whose = [character(8) :: link, 'BOTH', '']
       if (name /= 'JOINT') whose = ''
-      if (chance(w%r, 0.15_wp)) call add_card(w, 'TOLER', whose(throw(w%r, 3)), x1=0.01_wp*w%size_of*between(w%r, 0.0_wp, 1.0_wp))
-      if (chance(w%r, 0.01_wp)) call add_card(w, 'VARY', 'R1', '3', x1=w%size_of*between(w%r, 0.0_wp, 2.0_wp), &
-         x2=w%size_of*between(w%r, 0.0_wp, 2.0_wp))
+      if (chance(w%dice, 0.15_wp)) call add_card(w, 'TOLER', whose(throw(w%dice, 3)), &
+         x1=0.01_wp*w%size_of*between(w%dice, 0.0_wp, 1.0_wp))
+      if (chance(w%dice, 0.01_wp)) call add_card(w, 'VARY', 'R1', '3', x1=w%size_of*between(w%dice, 0.0_wp, 2.0_wp), &
+         x2=w%size_of*between(w%dice, 0.0_wp, 2.0_wp))
    end subroutine change_later
 
    !> The angle of `link` is driven, from the drawing or from any angle.
@@ -265,14 +265,14 @@ contains
       character(*), intent(in) :: link
       real(wp) :: rate
 
-      rate = w%turn*between(w%r, 0.05_wp, 0.5_wp)
-      if (chance(w%r, 0.5_wp)) rate = -rate
-      if (chance(w%r, 0.2_wp)) then
+      rate = w%turn*between(w%dice, 0.05_wp, 0.5_wp)
+      if (chance(w%dice, 0.5_wp)) rate = -rate
+      if (chance(w%dice, 0.2_wp)) then
          call add_card(w, 'DRIVE', 'RELANGLE', 'BASE', link, x2=rate)
-      else if (chance(w%r, 0.3_wp)) then
-         call add_card(w, 'DRIVE', 'ANGLE', link, x1=w%turn*between(w%r, -0.5_wp, 0.5_wp), x2=rate)
+      else if (chance(w%dice, 0.3_wp)) then
+         call add_card(w, 'DRIVE', 'ANGLE', link, x1=w%turn*between(w%dice, -0.5_wp, 0.5_wp), x2=rate)
       else
-         call add_card(w, 'DRIVE', 'ANGLE', link, merge('RPM', '   ', chance(w%r, 0.1_wp)), x2=rate)
+         call add_card(w, 'DRIVE', 'ANGLE', link, merge('RPM', '   ', chance(w%dice, 0.1_wp)), x2=rate)
       end if
       w%counts_turns = .true.
    end subroutine drive_angle
@@ -282,14 +282,15 @@ contains
       type(drawing_t), intent(inout) :: w
       character(8) :: steps
 
-      write (steps, '(i0)') throw(w%r, 12)
-      if (w%counts_turns .and. chance(w%r, 0.5_wp)) then
-         call add_card(w, 'TIME', steps, 'TURNS', x1=anint(between(w%r, -1.0_wp, 1.0_wp)), x2=between(w%r, 0.01_wp, 2.0_wp))
-         if (chance(w%r, 0.05_wp)) call add_card(w, 'VARY', 'R2', '3', x1=0.5_wp, x2=1.5_wp)
+      write (steps, '(i0)') throw(w%dice, 12)
+      if (w%counts_turns .and. chance(w%dice, 0.5_wp)) then
+         call add_card(w, 'TIME', steps, 'TURNS', x1=anint(between(w%dice, -1.0_wp, 1.0_wp)), &
+            x2=between(w%dice, 0.01_wp, 2.0_wp))
+         if (chance(w%dice, 0.05_wp)) call add_card(w, 'VARY', 'R2', '3', x1=0.5_wp, x2=1.5_wp)
       else
-         call add_card(w, 'TIME', steps, x1=0.0_wp, x2=between(w%r, -1.0_wp, 3.0_wp))
+         call add_card(w, 'TIME', steps, x1=0.0_wp, x2=between(w%dice, -1.0_wp, 3.0_wp))
       end if
-      if (chance(w%r, 0.2_wp)) call add_card(w, 'AT', x1=0.0_wp, x2=between(w%r, 0.0_wp, 1.0_wp))
+      if (chance(w%dice, 0.2_wp)) call add_card(w, 'AT', x1=0.0_wp, x2=between(w%dice, 0.0_wp, 1.0_wp))
    end subroutine draw_instants
 
    !> A place of the drawing.
@@ -297,8 +298,8 @@ contains
       type(drawing_t), intent(inout) :: w
       real(wp) :: p(2)
 
-      p(1) = w%size_of*between(w%r, -2.0_wp, 2.0_wp)
-      p(2) = w%size_of*between(w%r, -2.0_wp, 2.0_wp)
+      p(1) = w%size_of*between(w%dice, -2.0_wp, 2.0_wp)
+      p(2) = w%size_of*between(w%dice, -2.0_wp, 2.0_wp)
    end function anywhere
 
    !> A link by chance, but not `but`.
@@ -308,7 +309,7 @@ contains
       character(8) :: name
 
       do
-         name = w%links(throw(w%r, size(w%links)))
+         name = w%links(throw(w%dice, size(w%links)))
          if (name /= but) return
       end do
    end function other_link
@@ -369,6 +370,6 @@ contains
       if (present(c)) card(25:32) = c
       if (present(x1)) write (card(33:48), '(f16.4)') x1
       if (present(x2)) write (card(49:64), '(f16.4)') x2
-      call insert_line(w%deck, size(w%deck%line) + 1, card)
+      call insert_line(w%deck_text_t, size(w%line) + 1, card)
    end subroutine add_card
 end module drawn_decks

@@ -19,9 +19,9 @@ program fuzz
    use deck, only: read_deck
    use job, only: run_job
    use study, only: run_study
-   use deck_draft, only: draft_t, read_sets, write_draft, find_cards
+   use deck_text, only: deck_text_t, read_sets, write_deck, find_cards
    use deck_damage, only: deck_of_seed
-   use dice, only: dice_t, new_dice
+   use dice, only: new_dice
    use drawn_decks, only: drawn_deck
    use csv_closure, only: verdict_t, check_csv
    use listing_check, only: check_listing, check_protocol
@@ -58,12 +58,11 @@ program fuzz
       real(wp) :: worst(0:2) = 0.0_wp
    end type sums_t
 
-   type(draft_t), allocatable :: sets(:)
+   type(deck_text_t), allocatable :: sets(:)
    type(c_funptr) :: before
-   type(dice_t) :: r
    integer :: i
 
-   call ieee_set_halting_mode(ieee_usual, .false.)
+   call set_traps(.false.)
    ! Who calls this program may have made it ignore the alarm.
    before = signal(signal_alarm, c_null_funptr)
    allocate (sets(0))
@@ -71,10 +70,9 @@ program fuzz
       call read_sets(argument(i), sets)
    end do
    if (argument(1) == '--deck') then
-      call write_draft(deck_of_seed(sets, number(2)), argument(3))
+      call write_deck(deck_of_seed(sets, number(2)), argument(3))
    else if (argument(1) == '--drawn') then
-      r = new_dice(number(2))
-      call write_draft(drawn_deck(r), argument(3))
+      call write_deck(drawn_deck(new_dice(number(2))), argument(3))
    else
       call run_seeds(number(1), number(2), argument(3))
    end if
@@ -133,17 +131,19 @@ contains
       character(:), allocatable, intent(out) :: wrong
       type(verdict_t), intent(out) :: v
       type(options_t) :: options
-      type(draft_t) :: d
+      type(deck_text_t) :: d
       character(:), allocatable :: message
       integer :: flagged, k
       integer(c_int) :: left
 
       options = options_in(directory)
       d = deck_of_seed(sets, seed)
-      call write_draft(d, options%deck)
+      call write_deck(d, options%deck)
       if (mod(seed, others_every) == 0) call ask_for_others(options, d, directory)
       left = alarm(patience)
-      call run_trapped(options, status, message)
+      call set_traps(.true.)
+      call run_job(options, status, message)
+      call set_traps(.false.)
       wrong = ''
       select case (status)
       case (0, 2)
@@ -180,7 +180,7 @@ contains
    !> The other outputs, as far as the deck `d` has what they need.
    subroutine ask_for_others(options, d, directory)
       type(options_t), intent(inout) :: options
-      type(draft_t), intent(in) :: d
+      type(deck_text_t), intent(in) :: d
       character(*), intent(in) :: directory
       logical :: varies
       integer :: k
@@ -193,17 +193,13 @@ contains
       end do
    end subroutine ask_for_others
 
-   !> The job with the traps of the debug build.
-   subroutine run_trapped(options, status, message)
-      type(options_t), intent(in) :: options
-      integer, intent(out) :: status
-      character(:), allocatable, intent(out) :: message
+   !> With the traps of the debug build, or again without them.
+   subroutine set_traps(are_on)
+      logical, intent(in) :: are_on
 
-      call ieee_set_flag(ieee_all, .false.)
-      call ieee_set_halting_mode(ieee_usual, .true.)
-      call run_job(options, status, message)
-      call ieee_set_halting_mode(ieee_usual, .false.)
-   end subroutine run_trapped
+      if (are_on) call ieee_set_flag(ieee_all, .false.)
+      call ieee_set_halting_mode(ieee_usual, are_on)
+   end subroutine set_traps
 
    !> The study of a short deck, with the same traps; kinmat-quad is not there.
    subroutine study_deck(path, output, wrong)
@@ -217,10 +213,9 @@ contains
       wrong = ''
       call read_deck(path, read_sets, report, failure)
       if (sum([(instant_count(read_sets(k))*size(read_sets(k)%links), k=1, size(read_sets))]) > max_studied) return
-      call ieee_set_flag(ieee_all, .false.)
-      call ieee_set_halting_mode(ieee_usual, .true.)
+      call set_traps(.true.)
       call run_study(path, output, .false., status, report)
-      call ieee_set_halting_mode(ieee_usual, .false.)
+      call set_traps(.false.)
       if (status /= 0 .or. report /= '') wrong = 'STUDY: '//report
       if (wrong == '') call check_protocol(output, .false., wrong)
    end subroutine study_deck

@@ -1,26 +1,29 @@
-!> Tests. A deck as lines that can be changed field by field, and the sets of computations of the decks of input/.
-module deck_draft
+!> Tests. A deck as lines that can be changed field by field, with the dice for it; and the sets of the decks of input/.
+module deck_text
    use kinds, only: wp
+   use dice, only: dice_t, throw, chance, between, magnitude
    implicit none
    private
-   public :: draft_t, line_length, read_sets, name_of, label, set_label, real_field, set_real, set_full
-   public :: insert_line, drop_line, has_star, find_cards, add_note, write_draft
+   public :: deck_text_t, line_length, read_sets, name_of, label, set_label, real_field, set_real, set_full
+   public :: put_real, set_off, near, insert_line, drop_line, line_behind, copy_card, find_cards, any_card, is_degrees
+   public :: add_note, write_deck
 
    integer, parameter :: line_length = 200
 
-   type :: draft_t
+   type :: deck_text_t
+      type(dice_t) :: dice
       character(line_length), allocatable :: line(:)
-      character(:), allocatable :: notes         !< what was done to it, lines joined by new_line('a')
-   end type draft_t
+      character(line_length), allocatable :: notes(:) !< what was done to it
+   end type deck_text_t
 
 contains
 
    !> Adds the sets of the deck in the file `path` to `sets`, without comments.
    subroutine read_sets(path, sets)
       character(*), intent(in) :: path
-      type(draft_t), allocatable, intent(inout) :: sets(:)
+      type(deck_text_t), allocatable, intent(inout) :: sets(:)
       character(line_length) :: line
-      type(draft_t) :: one
+      type(deck_text_t) :: one
       integer :: unit, status
 
       allocate (one%line(0))
@@ -31,7 +34,7 @@ contains
          if (line(1:1) == '$') cycle
          one%line = [character(line_length) :: one%line, line]
          if (name_of(line) /= 'END') cycle
-         one%notes = path
+         one%notes = [character(line_length) :: path]
          sets = [sets, one]
          one%line = one%line(1:0)
       end do
@@ -64,7 +67,7 @@ contains
 
    !> Real field `k` (1 to 3) of card `i`, from the `*` card below it if that has it; 0 where there is no number.
    real(wp) function real_field(d, i, k)
-      type(draft_t), intent(in) :: d
+      type(deck_text_t), intent(in) :: d
       integer, intent(in) :: i, k
       integer :: status
 
@@ -94,7 +97,7 @@ contains
 
    !> A `*` card is below card `i`.
    pure logical function has_star(d, i)
-      type(draft_t), intent(in) :: d
+      type(deck_text_t), intent(in) :: d
       integer, intent(in) :: i
 
       has_star = i < size(d%line)
@@ -103,7 +106,7 @@ contains
 
    !> Real field `k` of card `i` becomes `x`, to the nine digits that its columns hold.
    subroutine set_real(d, i, k, x)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer, intent(in) :: i, k
       real(wp), intent(in) :: x
       character(16) :: text
@@ -118,7 +121,7 @@ contains
 
    !> The same with all digits, on a `*` card.
    subroutine set_full(d, i, k, x)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer, intent(in) :: i, k
       real(wp), intent(in) :: x
       integer :: c
@@ -136,9 +139,46 @@ contains
       end do
    end subroutine set_full
 
+   !> Writes `x` with nine digits or with all.
+   subroutine put_real(d, i, k, x)
+      type(deck_text_t), intent(inout) :: d
+      integer, intent(in) :: i, k
+      real(wp), intent(in) :: x
+
+      if (chance(d%dice, 0.2_wp)) then
+         call set_full(d, i, k, x)
+      else
+         call set_real(d, i, k, x)
+      end if
+   end subroutine put_real
+
+   !> A changed number: times a factor, a little off, rounded to a whole, of the other sign.
+   real(wp) function near(d, x)
+      type(deck_text_t), intent(inout) :: d
+      real(wp), intent(in) :: x
+
+      select case (throw(d%dice, 8))
+      case (1:3); near = x*between(d%dice, 0.6_wp, 1.6_wp)
+      case (4); near = x*(1.0_wp + between(d%dice, -1.0_wp, 1.0_wp)*10.0_wp**(-throw(d%dice, 14)))
+      case (5); near = x + between(d%dice, -1.0_wp, 1.0_wp)*max(abs(x), 1.0_wp)
+      case (6); near = anint(x)
+      case (7); near = -x
+      case default; near = x*magnitude(d%dice, 2)
+      end select
+   end function near
+
+   !> Real field `k` of card `i` is off by chance, by 1E-15 to 1.
+   subroutine set_off(d, i, k)
+      type(deck_text_t), intent(inout) :: d
+      integer, intent(in) :: i, k
+
+      call set_full(d, i, k, real_field(d, i, k) + between(d%dice, -1.0_wp, 1.0_wp)*10.0_wp**(-between(d%dice, 0.0_wp, &
+         15.0_wp)))
+   end subroutine set_off
+
    !> `line` becomes line number `i`.
    subroutine insert_line(d, i, line)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer, intent(in) :: i
       character(*), intent(in) :: line
       character(line_length) :: one
@@ -148,15 +188,35 @@ contains
    end subroutine insert_line
 
    subroutine drop_line(d, i)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       integer, intent(in) :: i
 
       d%line = [character(line_length) :: d%line(:i - 1), d%line(i + 1:)]
    end subroutine drop_line
 
+   !> The line behind card `i` and its `*` card.
+   pure integer function line_behind(d, i)
+      type(deck_text_t), intent(in) :: d
+      integer, intent(in) :: i
+
+      line_behind = i + merge(2, 1, has_star(d, i))
+   end function line_behind
+
+   !> A second card like card `i`, with its `*` card and, for a drive, its terms, from line `at` on.
+   subroutine copy_card(d, i, at)
+      type(deck_text_t), intent(inout) :: d
+      integer, intent(in) :: i
+      integer, intent(out) :: at
+
+      do at = i + 1, size(d%line)
+         if (d%line(at)(1:1) /= '*' .and. all(name_of(d%line(at)) /= ['ADD ', 'RISE'])) exit
+      end do
+      d%line = [character(line_length) :: d%line(:at - 1), d%line(i:at - 1), d%line(at:)]
+   end subroutine copy_card
+
    !> Numbers of the lines whose card has one of `names`.
    pure function find_cards(d, names) result(found)
-      type(draft_t), intent(in) :: d
+      type(deck_text_t), intent(in) :: d
       character(8), intent(in) :: names(:)
       integer, allocatable :: found(:)
       logical :: is_one(size(d%line))
@@ -168,16 +228,36 @@ contains
       found = pack([(i, i=1, size(d%line))], is_one)
    end function find_cards
 
+   !> The line of a card that has one of `names`, 0 if there is none.
+   integer function any_card(d, names)
+      type(deck_text_t), intent(inout) :: d
+      character(8), intent(in) :: names(:)
+      integer, allocatable :: cards(:)
+
+      cards = find_cards(d, names)
+      any_card = 0
+      if (size(cards) > 0) any_card = cards(throw(d%dice, size(cards)))
+   end function any_card
+
+   logical function is_degrees(d)
+      type(deck_text_t), intent(in) :: d
+      integer, allocatable :: cards(:)
+
+      cards = find_cards(d, ['UNITS   '])
+      is_degrees = .false.
+      if (size(cards) > 0) is_degrees = label(d%line(cards(1)), 2) == 'DEG'
+   end function is_degrees
+
    subroutine add_note(d, text)
-      type(draft_t), intent(inout) :: d
+      type(deck_text_t), intent(inout) :: d
       character(*), intent(in) :: text
 
-      d%notes = d%notes//new_line('a')//text
+      d%notes = [character(line_length) :: d%notes, text]
    end subroutine add_note
 
    !> The lines of `d` to the file `path`, without blanks at their ends.
-   subroutine write_draft(d, path)
-      type(draft_t), intent(in) :: d
+   subroutine write_deck(d, path)
+      type(deck_text_t), intent(in) :: d
       character(*), intent(in) :: path
       integer :: unit, i
 
@@ -186,5 +266,5 @@ contains
          write (unit) trim(d%line(i))//new_line('a')
       end do
       close (unit)
-   end subroutine write_draft
-end module deck_draft
+   end subroutine write_deck
+end module deck_text
