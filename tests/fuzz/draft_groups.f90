@@ -5,14 +5,14 @@ module draft_groups
    use quad_jet, only: qp, pi_q
    use dice, only: throw, chance
    use schemes, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide, form_any, form_rrr, form_rrp, &
-      form_rpr, form_prp, form_rpp, form_parallelogram, double, point_t, set_trigonometry
-   use scheme_draft, only: draft_t, number, anywhere, add_link, join, pick_base, place_on_base, begin_group
+      form_rpr, form_prp, form_rpp, form_parallelogram, double, point_t, pair_t, set_trigonometry
+   use scheme_draft, only: draft_t, number, square, anywhere, add_link, add_links, join, pick_base, place_on_base, &
+      begin_group
    use draft_drives, only: add_drive, add_point_drive, set_steady
    implicit none
    private
    public :: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, add_cylinder, &
-      add_table, &
-      add_ring, add_parallelogram
+      add_table, add_ring, add_parallelogram
 
 contains
 
@@ -69,19 +69,18 @@ contains
       type(draft_t), intent(inout) :: d
       character(3), parameter :: words(5) = ['RRR', 'RRP', 'RPR', 'PRP', 'RPP']
       integer, parameter :: forms(5) = [form_rrr, form_rrp, form_rpr, form_prp, form_rpp]
-      integer :: which, e, f, l
+      integer :: which, e, f, first
 
       which = throw(d%dice, 7)
       if (which > 5) which = 1
       call begin_group(d, forms(which))
       e = pick_base(d)
       f = pick_base(d)
-      l = add_link(d, .false.)
-      l = add_link(d, .false.)
+      first = add_links(d, 2, .false.)
       associate (w => words(which))
-         call join(d, e, l - 1, w(1:1) == 'P', place_on_base(d, e))
-         call join(d, l - 1, l, w(2:2) == 'P', anywhere(d))
-         call join(d, l, f, w(3:3) == 'P', place_on_base(d, f))
+         call join(d, e, first, w(1:1) == 'P', place_on_base(d, e))
+         call join(d, first, first + 1, w(2:2) == 'P', anywhere(d))
+         call join(d, first + 1, f, w(3:3) == 'P', place_on_base(d, f))
       end associate
    end subroutine add_dyad
 
@@ -103,7 +102,7 @@ contains
          if (k > 1) call join(d, before, plate, .false., last)
          do i = 1, merge(2, 1, k == 1 .or. k == n) + merge(1, 0, n == 1)
             call add_leg(d, plate, last + step*number(d, 0.0_qp, 1.0_qp) &
-               + d%size*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)])
+               + d%size*square(d, 1.0_qp))
          end do
          last = last + step
       end do
@@ -120,7 +119,7 @@ contains
       base = pick_base(d)
       l = add_link(d, .false.)
       slide = throw(d%dice, 6)
-      foot = where + d%size*[number(d, -2.0_qp, 2.0_qp), number(d, -2.0_qp, 2.0_qp)]
+      foot = where + d%size*square(d, 2.0_qp)
       if (d%s%links(base)%reach < d%size) foot = place_on_base(d, base)
       call join(d, plate, l, slide == 1, where)
       call join(d, l, base, slide == 2, foot)
@@ -134,9 +133,7 @@ contains
       call begin_group(d, form_any)
       e = pick_base(d)
       f = pick_base(d)
-      do k = 1, 4
-         first = add_link(d, .false.) - 3
-      end do
+      first = add_links(d, 4, .false.)
       slide = throw(d%dice, 12)
       do k = 0, 3
          call join(d, first + k, first + modulo(k + 1, 4), slide == k + 1, anywhere(d))
@@ -155,16 +152,14 @@ contains
       call begin_group(d, form_any)
       middle = anywhere(d)
       radius = d%size*n/6.0_qp
-      do k = 1, n
-         first = add_link(d, .false.) - n + 1
-      end do
+      first = add_links(d, n, .false.)
       do k = 0, n - 1
          p = middle + radius*[cos(2.0_qp*pi_q*k/n), sin(2.0_qp*pi_q*k/n)]
-         p = p + 0.4_qp*d%size*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+         p = p + 0.4_qp*d%size*square(d, 1.0_qp)
          call join(d, first + k, first + modulo(k + 1, n), chance(d%dice, 0.03_wp), p)
          if (modulo(k, 2) == 1) cycle
          base = pick_base(d)
-         p = p + d%size*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+         p = p + d%size*square(d, 1.0_qp)
          if (d%s%links(base)%reach < d%size) p = place_on_base(d, base)
          call join(d, base, first + k, .false., p)
       end do
@@ -174,20 +169,17 @@ contains
    subroutine add_open_chain(d, amplitude)
       type(draft_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
-      integer :: e, f, first, slide, pairs
+      integer :: e, f, first, slide
 
       call begin_group(d, form_any)
       e = pick_base(d)
       f = pick_base(d)
-      first = add_link(d, .false.)
-      pairs = add_link(d, .false.)
-      pairs = add_link(d, .false.)
+      first = add_links(d, 3, .false.)
       slide = throw(d%dice, 6)
       call join(d, e, first, slide == 1, place_on_base(d, e))
       call join(d, first, first + 1, slide == 2, anywhere(d))
       call join(d, first + 1, first + 2, slide == 3, anywhere(d))
       call join(d, first + 2, f, slide == 4, place_on_base(d, f))
-      pairs = size(d%s%pairs)
       select case (throw(d%dice, 5))
       case (1)
          call add_drive(d, drive_angle, first + 1, 0, amplitude)
@@ -198,7 +190,7 @@ contains
       case (4)
          call add_point_drive(d, drive_y, first, amplitude*d%size)
       case default
-         if (slide <= 4) call add_drive(d, drive_slide, pairs - 4 + slide, 0, amplitude*d%size)
+         if (slide <= 4) call add_drive(d, drive_slide, size(d%s%pairs) - 4 + slide, 0, amplitude*d%size)
          if (slide > 4) call add_point_drive(d, drive_y, first + 1, amplitude*d%size)
       end select
    end subroutine add_open_chain
@@ -236,9 +228,7 @@ contains
       call begin_group(d, form_any)
       e = pick_base(d)
       f = pick_base(d)
-      first = add_link(d, .false.)
-      first = add_link(d, .false.)
-      first = add_link(d, .false.) - 2
+      first = add_links(d, 3, .false.)
       p = anywhere(d)
       call join(d, e, first, .false., place_on_base(d, e))
       call join(d, first, first + 1, .false., p)
@@ -255,8 +245,7 @@ contains
 
       call begin_group(d, form_any)
       e = pick_base(d)
-      first = add_link(d, .false.)
-      first = add_link(d, .false.) - 1
+      first = add_links(d, 2, .false.)
       call join(d, e, first, .true., place_on_base(d, e))
       call join(d, first, first + 1, .true., anywhere(d))
       if (chance(d%dice, 0.5_wp)) then
@@ -281,16 +270,14 @@ contains
       call begin_group(d, form_parallelogram)
       base = pick_base(d)
       unit = 2.0_qp**(exponent(d%size) - 20)
-      pivot = unit*anint(d%size/unit*[number(d, -2.0_qp, 2.0_qp), number(d, -2.0_qp, 2.0_qp)])
+      pivot = unit*anint(d%size/unit*square(d, 2.0_qp))
       arm(:, 1) = 0.0_qp
       do k = 2, bars
          arm(:, k) = unit*anint(d%size/unit*[number(d, 0.5_qp, 2.0_qp), number(d, -1.5_qp, 1.5_qp)]*(-1)**k)
          if (in_line) arm(:, k) = arm(:, 2)*(k/2)*(-1)**k
       end do
       length = double(d%size*number(d, 0.5_qp, 2.0_qp))
-      do k = 1, bars + 1
-         first = add_link(d, .false.) - k + 1
-      end do
+      first = add_links(d, bars + 1, .false.)
       ! Bar 1, coupler, bar 2 and further bars.
       call lay_parallelogram(d, base, first, bars, pivot, arm, length)
       do k = 1, bars
@@ -351,7 +338,6 @@ contains
    end subroutine join_parallelogram
 
    subroutine join_points(d, i, j)
-      use schemes, only: pair_t
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: i, j
       type(pair_t) :: pair

@@ -4,15 +4,15 @@ module random_schemes
    use kinds, only: wp
    use disjoint_sets, only: joined
    use quad_jet, only: qp
-   use dice, only: dice_t, new_dice, throw, chance, between, magnitude, disorder
+   use dice, only: dice_t, new_dice, throw, chance, between, magnitude
    use schemes, only: scheme_t, pair_t, measure_t, measure_line, measure_angle, measure_xi, measure_sum, drive_t, &
       drive_angle, drive_relangle, drive_x, drive_y, angle_unit, link_at, double
-   use scheme_draft, only: draft_t, number, add_link, add_point, world, end_group
+   use scheme_draft, only: draft_t, new_draft, number, square, add_link, add_point, world, end_group, shuffle
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram
    implicit none
    private
-   public :: random_scheme, class_of, surplus_scheme, add_measures, class_dyads, class_triads, class_wide
+   public :: random_scheme, class_of, surplus_scheme, add_measures
 
    enum, bind(c)
       enumerator :: class_dyads = 1, class_triads, class_wide
@@ -42,7 +42,7 @@ contains
       integer :: k, parts, ground
 
       allocate (d)
-      d%dice = new_dice(seed + 1000000000*(set - 1))
+      d = new_draft(new_dice(seed + 1000000000*(set - 1)))
       call begin_scheme(d, seed)
       parts = merge(2, 1, chance(d%dice, 0.15_wp))
       do k = 1, parts
@@ -145,7 +145,7 @@ contains
       integer :: k, points, pairs
 
       allocate (d)
-      d%dice = new_dice(seed + 500000000)
+      d = new_draft(new_dice(seed + 500000000))
       call begin_scheme(d, seed)
       d%scale = magnitude(d%dice, merge(6, 1, chance(d%dice, 0.5_wp)))
       d%size = d%scale
@@ -201,9 +201,9 @@ contains
       end do
       pair = d%s%pairs(k)
       links = [link_at(d%s, pair%point_i), link_at(d%s, pair%point_j)]
-      where = world(d, pair%point_i) + d%scale*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+      where = world(d, pair%point_i) + d%scale*square(d, 1.0_qp)
       pair%point_i = add_point(d, links(1), where)
-      where = where + d%scale*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+      where = where + d%scale*square(d, 1.0_qp)
       pair%point_j = add_point(d, links(2), where)
       theta = d%b(links(1))%phi%v + pair%alpha*angle_unit(d%s)
       e = world(d, pair%point_i) - world(d, pair%point_j)
@@ -254,7 +254,6 @@ contains
       associate (s => d%s)
          s%seed = seed
          s%degrees = chance(d%dice, 0.5_wp)
-         allocate (s%links(0), s%points(0), s%pairs(0), s%drives(0), s%groups(0), s%at(0), d%b(0))
          if (chance(d%dice, 0.2_wp)) d%special = 0.5_wp
          span = magnitude(d%dice, 2)
          start = 0.0_qp
@@ -373,7 +372,7 @@ contains
       d%size = d%scale
       d%centre = 0.0_qp
       if (.not. chance(d%dice, 0.04_wp)) return
-      d%centre = d%scale*[number(d, -3.0_qp, 3.0_qp), number(d, -3.0_qp, 3.0_qp)]
+      d%centre = d%scale*square(d, 3.0_qp)
       d%size = d%scale*10.0_qp**number(d, -3.0_qp, -0.5_qp)
    end subroutine choose_region
 
@@ -388,9 +387,7 @@ contains
          if (chance(d%dice, 0.05_wp) .and. size(s%pairs) > 0) twice = throw(d%dice, size(s%pairs))
          if (twice > 0) s%pairs = [s%pairs, s%pairs(twice)]
          if (twice > 0 .or. any(s%groups%redundant)) s%method = ''
-         s%link_order = disorder(d%dice, size(s%links))
-         s%point_order = disorder(d%dice, size(s%points))
-         s%pair_order = disorder(d%dice, size(s%pairs))
+         call shuffle(d)
          s%print = merge('ALL  ', 'LINKS', chance(d%dice, 0.2_wp))
          if (s%print == 'LINKS' .and. chance(d%dice, 0.1_wp)) then
             allocate (s%printed(0))

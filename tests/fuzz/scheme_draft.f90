@@ -3,16 +3,15 @@
 module scheme_draft
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, constant_jet
-   use dice, only: dice_t, throw, chance, between
+   use dice, only: dice_t, throw, chance, between, disorder
    use schemes, only: scheme_t, link_t, point_t, pair_t, group_t, body_t, drive_relangle, form_any, &
-      form_parallelogram, &
-      angle_unit, link_at, place, set_trigonometry, double
+      form_parallelogram, angle_unit, link_at, place, set_trigonometry, double
    use dyad_forms, only: solve_dyad, choose_side
    use group_newton, only: outcome_t, solve_group
    implicit none
    private
-   public :: draft_t, add_link, add_point, join, number, begin_group, end_group, anywhere, place_on_base, pick_base, &
-      world
+   public :: draft_t, new_draft, add_link, add_links, add_point, join, number, square, begin_group, end_group, anywhere
+   public :: place_on_base, pick_base, world, shuffle
 
    type :: draft_t
       type(dice_t) :: dice
@@ -22,6 +21,7 @@ module scheme_draft
       real(qp) :: scale = 1.0_qp               !< a length of the mechanism
       real(qp) :: centre(2) = 0.0_qp, size = 1.0_qp !< where the group's joints are: so far from a place, times 3
       real(wp) :: special = 0.0_wp             !< share of right angles and whole coordinates
+      real(wp) :: shared = 0.0_wp              !< share of joints that lie on others
       real(qp) :: t = 0.0_qp                   !< the first instant
       real(qp) :: from = 0.0_qp, to = 0.0_qp   !< the range of all instants
       integer :: part = 1                      !< the independent mechanism that is being made,
@@ -35,6 +35,15 @@ module scheme_draft
 
 contains
 
+   !> Nothing yet, by these `dice`.
+   function new_draft(dice) result(d)
+      type(dice_t), intent(in) :: dice
+      type(draft_t) :: d
+
+      d%dice = dice
+      allocate (d%s%links(0), d%s%points(0), d%s%pairs(0), d%s%drives(0), d%s%groups(0), d%s%at(0), d%b(0))
+   end function new_draft
+
    !> A number in the range from `low` to `high`.
    real(qp) function number(d, low, high)
       type(draft_t), intent(inout) :: d
@@ -43,13 +52,22 @@ contains
       number = between(d%dice, real(low, wp), real(high, wp))
    end function number
 
+   !> A way up to `reach` along either axis.
+   function square(d, reach) result(p)
+      type(draft_t), intent(inout) :: d
+      real(qp), intent(in) :: reach
+      real(qp) :: p(2)
+
+      p(1) = number(d, -reach, reach)
+      p(2) = number(d, -reach, reach)
+   end function square
+
    !> A place of the group's region.
    function anywhere(d) result(p)
       type(draft_t), intent(inout) :: d
       real(qp) :: p(2)
 
-      p(1) = number(d, -3.0_qp, 3.0_qp)
-      p(2) = number(d, -3.0_qp, 3.0_qp)
+      p = square(d, 3.0_qp)
       if (chance(d%dice, d%special)) p = anint(p)
       p = d%centre + d%size*p
    end function anywhere
@@ -78,6 +96,7 @@ contains
       link%ground = is_ground
       link%at(:2) = double(anywhere(d))
       link%at(3) = to_deck(some_angle(d), angle_unit(d%s))*angle_unit(d%s)
+      link%estimate = link%at
       link%centre = d%centre
       link%reach = 3.0_qp*d%size
       d%s%links = [d%s%links, link]
@@ -88,6 +107,18 @@ contains
       d%b = [d%b, b]
       l = size(d%s%links)
    end function add_link
+
+   !> The number of the first of `n` new links.
+   integer function add_links(d, n, is_ground) result(first)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: n
+      logical, intent(in) :: is_ground
+      integer :: k
+
+      do k = 1, n
+         first = add_link(d, is_ground) - n + 1
+      end do
+   end function add_links
 
    !> A point of `link` at the place `where` of the assembly.
    integer function add_point(d, link, where) result(p)
@@ -115,7 +146,8 @@ contains
       p = q%v
    end function world
 
-   !> A pair of links `i` and `j` at `where`, in this order or the other.
+   !> A pair of links `i` and `j` at `where`, in this order or the other; some, instead, at an old joint or at the
+   !> origin of one of the two.
    subroutine join(d, i, j, is_prismatic, where)
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: i, j
@@ -123,17 +155,19 @@ contains
       real(qp), intent(in) :: where(2)
       type(pair_t) :: pair
       integer :: link(2)
-      real(qp) :: e(2), other(2), theta
+      real(qp) :: e(2), one(2), other(2), theta
 
       link = merge([i, j], [j, i], chance(d%dice, 0.5_wp))
+      one = where
+      if (d%shared > 0.0_wp) call share_place(d, link, one)
       pair%prismatic = is_prismatic
-      pair%point_i = add_point(d, link(1), where)
-      other = where
+      pair%point_i = add_point(d, link(1), one)
+      other = one
       if (is_prismatic) then
          pair%alpha = to_deck(some_angle(d), angle_unit(d%s))
          theta = d%b(link(1))%phi%v + pair%alpha*angle_unit(d%s)
          e = [cos(theta), sin(theta)]
-         other = where + d%size*number(d, -2.0_qp, 2.0_qp)*e
+         other = one + d%size*number(d, -2.0_qp, 2.0_qp)*e
          if (.not. chance(d%dice, d%special)) other = other + d%size*number(d, -1.0_qp, 1.0_qp)*[-e(2), e(1)]
       end if
       pair%point_j = add_point(d, link(2), other)
@@ -145,6 +179,24 @@ contains
       end if
       d%s%pairs = [d%s%pairs, pair]
    end subroutine join
+
+   !> Now and then `where` becomes the place of an old joint, or of the origin, of one of two links.
+   subroutine share_place(d, link, where)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: link(2)
+      real(qp), intent(inout) :: where(2)
+      integer :: k
+
+      if (.not. chance(d%dice, d%shared)) return
+      if (size(d%s%points) > 0 .and. chance(d%dice, 0.4_wp)) then
+         k = throw(d%dice, size(d%s%points))
+         if (any(link_at(d%s, k) == link)) where = world(d, k)
+      else
+         associate (b => d%b(link(throw(d%dice, 2))))
+            where = [b%x%v, b%y%v]
+         end associate
+      end if
+   end subroutine share_place
 
    !> A link that a group may hang on: the ground, or one of the mechanism that is being made.
    integer function pick_base(d) result(l)
@@ -165,11 +217,20 @@ contains
       real(qp) :: p(2)
 
       if (d%s%links(l)%reach < d%size) then
-         p = d%s%links(l)%centre + d%s%links(l)%reach*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+         p = d%s%links(l)%centre + d%s%links(l)%reach*square(d, 1.0_qp)
       else
          p = anywhere(d)
       end if
    end function place_on_base
+
+   !> Links, points and pairs in any order on the cards.
+   subroutine shuffle(d)
+      type(draft_t), intent(inout) :: d
+
+      d%s%link_order = disorder(d%dice, size(d%s%links))
+      d%s%point_order = disorder(d%dice, size(d%s%points))
+      d%s%pair_order = disorder(d%dice, size(d%s%pairs))
+   end subroutine shuffle
 
    subroutine begin_group(d, form)
       type(draft_t), intent(inout) :: d

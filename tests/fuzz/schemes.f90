@@ -306,7 +306,7 @@ contains
    !> One card with its labels, and its numbers with so many `digits` on a card of their own.
    subroutine card(digits, unit, what, labels, reals)
       integer, intent(in) :: digits, unit
-      character(8), intent(in) :: what, labels(:)
+      character(*), intent(in) :: what, labels(:)
       real(qp), intent(in) :: reals(:)
       character(104) :: line
       character(12) :: form

@@ -1,18 +1,21 @@
-!> Tests. Mechanisms by the dice: from ground links outwards cranks, slides, dyads, triads, closed nets of four, cylinders and
-!> floating links, each with as many drives as it has freedoms. The position comes first, so that every mechanism is assembled at
-!> t = 0 as far as rounding lets it be.
+!> Tests. Random mechanisms as plain data, from ground links outwards: the groups of `draft_groups`, near a singularity
+!> or not, each with as many drives as it has freedoms. The position comes first, so that every mechanism is assembled
+!> at t = 0 as far as rounding lets it be.
 module random_mechanisms
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, &
-      drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use quad_jet, only: qp
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t
+   use deck, only: read_deck
    use dice, only: new_dice, throw, chance
-   use random_drafts, only: draft_t, add_links, add_link, join, add_drive, add_point_drive, add_relative_angle, &
-      fair_copy
+   use schemes, only: write_scheme, form_any, drive_x, drive_y
+   use scheme_draft, only: draft_t, new_draft, number, anywhere, add_links, join, pick_base, begin_group, shuffle
+   use draft_drives, only: add_drive, add_point_drive
+   use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
+      add_cylinder, add_table
    implicit none
    private
    public :: random_mechanism
-
-   integer, parameter :: r = pair_revolute, p = pair_prismatic
 
 contains
 
@@ -23,206 +26,83 @@ contains
       real(wp), intent(in) :: special
       type(mechanism_t) :: m
       type(draft_t), allocatable :: d
-      integer :: k
+      integer :: k, ground
 
       allocate (d)
-      d%dice = new_dice(seed)
+      d = new_draft(new_dice(seed))
       d%special = special
-      do k = 1, throw(d%dice, 3)
-         call add_link(d, 0)
-         d%link(d%links)%ground = .true.
-      end do
-      call add_driven_link(d, 1)
+      d%shared = special
+      d%to = 1.0_qp
+      d%s%at = [0.0_qp]
+      ground = throw(d%dice, 3)
+      k = add_links(d, ground, .true.)
+      call add_crank(d, 0.8_qp)
       do k = 2, groups
-         call add_group(d)
+         call add_group(d, number(d, 0.05_qp, 0.8_qp))
       end do
-      call fair_copy(d, m)
+      call shuffle(d)
+      d%s%print = 'LINKS'
+      ! Tables of some links alone.
+      if (chance(d%dice, 0.3_wp)) &
+         d%s%printed = [(k, k=ground + throw(d%dice, size(d%s%links) - ground), size(d%s%links))]
+      m = as_read(d)
    end function random_mechanism
 
-   subroutine add_group(d)
+   !> The mechanism of the draft `d`, as the reader of decks makes it, but without instants.
+   function as_read(d) result(m)
+      type(draft_t), intent(in) :: d
+      type(mechanism_t) :: m
+      character(*), parameter :: path = 'unit_test_random.tmp'
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+      integer :: unit
+
+      open (newunit=unit, file=path, status='replace', action='readwrite')
+      call write_scheme(d%s, unit)
+      flush (unit)
+      call read_deck(path, sets, report, failure)
+      close (unit, status='delete')
+      if (allocated(failure)) error stop 'A RANDOM MECHANISM IS NOT READ'
+      m = sets(1)
+      m%at = m%at(:0)
+   end function as_read
+
+   subroutine add_group(d, way)
       type(draft_t), intent(inout) :: d
+      real(qp), intent(in) :: way
 
       select case (throw(d%dice, 16))
-      case (1:3); call add_driven_link(d, throw(d%dice, 7))
+      case (1); call add_crank(d, way)
+      case (2); call add_slider(d, way)
+      case (3); call add_driven_ends(d, 1, way)
       case (4:9); call add_dyad(d)
-      case (10); call add_end_driven_chain(d)
-      case (11); call add_triad(d)
+      case (10); call add_driven_ends(d, 2, way)
+      case (11); call add_plates(d, 1)
       case (12); call add_net(d)
-      case (13); call add_cylinder(d)
-      case (14); call add_floating(d)
-      case (15); call add_table(d)
-      case default; call add_open_loop(d)
+      case (13); call add_cylinder(d, way)
+      case (14); call add_floating(d, way)
+      case (15); call add_table(d, way)
+      case default; call add_open_chain(d, way)
       end select
    end subroutine add_group
 
-   !> One link on another, and its drive.
-   subroutine add_driven_link(d, kind)
+   !> One link that turns, driven by a coordinate of its end; or two in a row, driven by both.
+   subroutine add_driven_ends(d, links, way)
       type(draft_t), intent(inout) :: d
-      integer, intent(in) :: kind
-      integer :: base, link
+      integer, intent(in) :: links
+      real(qp), intent(in) :: way
+      integer :: first
 
-      base = throw(d%dice, d%links)
-      call add_link(d, base)
-      link = d%links
-      call join(d, base, link, merge(r, p, kind <= 4))
-      select case (kind)
-      case (1:2)
-         call add_drive(d, drive_angle, link, 0)
-      case (3)
-         call add_relative_angle(d, link)
-      case (4, 7)
-         call add_point_drive(d, merge(drive_x, drive_y, chance(d%dice, 0.5_wp)), link)
-      case default
-         call add_drive(d, drive_slide, d%pairs, 0)
-      end select
-   end subroutine add_driven_link
-
-   !> Two links; three prismatic pairs would leave nothing to turn.
-   subroutine add_dyad(d)
-      type(draft_t), intent(inout) :: d
-      integer :: kind(3), e, f, first, k
-
-      do
-         kind = [(merge(r, p, chance(d%dice, 0.6_wp)), k=1, 3)]
-         if (any(kind == r)) exit
-      end do
-      e = throw(d%dice, d%links)
-      f = throw(d%dice, d%links)
-      first = add_links(d, 2)
-      call join(d, e, first, kind(1))
-      call join(d, first, first + 1, kind(2))
-      call join(d, first + 1, f, kind(3))
-   end subroutine add_dyad
-
-   !> Two links in a row, the end of the second driven along x and y.
-   subroutine add_end_driven_chain(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e, first
-
-      e = throw(d%dice, d%links)
-      first = add_links(d, 2)
-      call join(d, e, first, r)
-      call join(d, first, first + 1, r)
-      call add_point_drive(d, drive_x, first + 1)
-      call add_drive(d, drive_y, d%drive(d%drives)%subject, 0)
-   end subroutine add_end_driven_chain
-
-   !> A plate on three legs.
-   subroutine add_triad(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e(3), first, k
-
-      do k = 1, 3
-         e(k) = throw(d%dice, d%links)
-      end do
-      first = add_links(d, 4)
-      do k = 1, 3
-         select case (throw(d%dice, 4))
-         case (1)
-            call join(d, first, first + k, p)
-            call join(d, first + k, e(k), r)
-         case (2)
-            call join(d, first, first + k, r)
-            call join(d, first + k, e(k), p)
-         case default
-            call join(d, first, first + k, r)
-            call join(d, first + k, e(k), r)
-         end select
-      end do
-   end subroutine add_triad
-
-   !> Four links in a ring, two of them on others.
-   subroutine add_net(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e, f, first, k
-
-      e = throw(d%dice, d%links)
-      f = throw(d%dice, d%links)
-      first = add_links(d, 4)
-      do k = 0, 3
-         call join(d, first + k, first + modulo(k + 1, 4), merge(p, r, k == 2 .and. chance(d%dice, 0.3_wp)))
-      end do
-      call join(d, e, first, r)
-      call join(d, first + 2, f, r)
-   end subroutine add_net
-
-   !> A link moved by a cylinder.
-   subroutine add_cylinder(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e, f, first
-
-      e = throw(d%dice, d%links)
-      f = throw(d%dice, d%links)
-      first = add_links(d, 3)
-      call join(d, e, first, r)
-      call join(d, first, first + 1, r)
-      call join(d, first + 2, f, r)
-      call join(d, first + 1, first + 2, p)
-      call add_drive(d, drive_slide, d%pairs, 0)
-   end subroutine add_cylinder
-
-   !> A link on no other: x and y of one of its points are driven, and an angle or a coordinate of another point.
-   subroutine add_floating(d)
-      type(draft_t), intent(inout) :: d
-      integer :: link
-
-      link = add_links(d, 1)
-      call add_point_drive(d, drive_x, link)
-      call add_drive(d, drive_y, d%drive(d%drives)%subject, 0)
-      select case (throw(d%dice, 3))
-      case (1)
-         call add_drive(d, drive_angle, link, 0)
-      case (2)
-         call add_relative_angle(d, link)
-      case default
-         call add_point_drive(d, merge(drive_x, drive_y, chance(d%dice, 0.5_wp)), link)
-      end select
-   end subroutine add_floating
-
-   !> Two slides one upon the other: driven as slides, or the table along x and y.
-   subroutine add_table(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e, first
-
-      e = throw(d%dice, d%links)
-      first = add_links(d, 2)
-      call join(d, e, first, p)
-      call join(d, first, first + 1, p)
-      if (chance(d%dice, 0.5_wp)) then
-         call add_drive(d, drive_slide, d%pairs - 1, 0)
-         call add_drive(d, drive_slide, d%pairs, 0)
+      call begin_group(d, form_any)
+      first = add_links(d, links, .false.)
+      call join(d, pick_base(d), first, .false., anywhere(d))
+      if (links == 1) then
+         call add_point_drive(d, merge(drive_x, drive_y, chance(d%dice, 0.5_wp)), first, way)
       else
-         call add_point_drive(d, drive_x, first + 1)
-         call add_drive(d, drive_y, d%drive(d%drives)%subject, 0)
+         call join(d, first, first + 1, .false., anywhere(d))
+         call add_point_drive(d, drive_x, first + 1, way)
+         call add_drive(d, drive_y, size(d%s%points), 0, way)
       end if
-   end subroutine add_table
-
-   !> Three links in a row between two others, driven somewhere inside.
-   subroutine add_open_loop(d)
-      type(draft_t), intent(inout) :: d
-      integer :: e, f, first, slider
-
-      e = throw(d%dice, d%links)
-      f = throw(d%dice, d%links)
-      first = add_links(d, 3)
-      slider = throw(d%dice, 6)
-      call join(d, e, first, merge(p, r, slider == 1))
-      call join(d, first, first + 1, merge(p, r, slider == 2))
-      call join(d, first + 1, first + 2, merge(p, r, slider == 3))
-      call join(d, first + 2, f, merge(p, r, slider == 4))
-      select case (throw(d%dice, 4))
-      case (1)
-         call add_drive(d, drive_angle, first + 1, 0)
-      case (2)
-         call add_drive(d, drive_relangle, first, first + 2)
-      case (3)
-         call add_point_drive(d, drive_x, first + 1)
-      case default
-         if (slider <= 4) then
-            call add_drive(d, drive_slide, d%pairs - 4 + slider, 0)
-         else
-            call add_point_drive(d, drive_y, first + throw(d%dice, 3) - 1)
-         end if
-      end select
-   end subroutine add_open_loop
+   end subroutine add_driven_ends
 end module random_mechanisms
