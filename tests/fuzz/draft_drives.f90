@@ -4,12 +4,11 @@ module draft_drives
    use kinds, only: wp
    use quad_jet, only: qp, pi_q, jet_t
    use dice, only: throw, chance
-   use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, &
-      double, &
-      link_at
+   use schemes, only: drive_t, angle_unit, drive_unit, double
    use drive_laws, only: law_t, law_jet, term_harmonic, term_power, term_table, term_rise
    use rise_laws, only: rise_words
-   use scheme_draft, only: draft_t, number, world, add_point, anywhere
+   use group_newton, only: driven
+   use scheme_draft, only: draft_t, number, add_point, anywhere
    implicit none
    private
    public :: add_drive, add_point_drive, set_steady
@@ -22,17 +21,17 @@ contains
       integer, intent(in) :: kind, subject, second
       real(qp), intent(in) :: amplitude
       type(drive_t) :: drive
-      type(jet_t) :: f
-      real(qp) :: unit, now
+      type(jet_t) :: f, now
+      real(qp) :: unit
 
       drive%kind = kind
       drive%subject = subject
       drive%second = second
       unit = drive_unit(d%s, drive)
       call make_law(d, drive%law, amplitude/unit)
-      now = value_now(d, drive)
+      now = driven(d%s, drive, d%b)
       f = law_jet(drive%law, d%t, unit, angle_unit(d%s))
-      drive%law%polynomial(1) = double((now - f%v)/unit)
+      drive%law%polynomial(1) = double((now%v - f%v)/unit)
       d%s%drives = [d%s%drives, drive]
    end subroutine add_drive
 
@@ -44,30 +43,6 @@ contains
 
       call add_drive(d, kind, add_point(d, link, anywhere(d)), 0, amplitude)
    end subroutine add_point_drive
-
-   !> What `drive` gives, in the assembly.
-   real(qp) function value_now(d, drive) result(value)
-      type(draft_t), intent(in) :: d
-      type(drive_t), intent(in) :: drive
-      real(qp) :: p(2), theta
-
-      value = 0.0_qp
-      select case (drive%kind)
-      case (drive_angle)
-         value = d%s%links(drive%subject)%at(3)
-      case (drive_relangle)
-         value = d%s%links(drive%second)%at(3) - d%s%links(drive%subject)%at(3)
-      case (drive_x, drive_y)
-         p = world(d, drive%subject)
-         value = merge(p(1), p(2), drive%kind == drive_x)
-      case (drive_slide)
-         associate (pair => d%s%pairs(drive%subject))
-            theta = d%b(link_at(d%s, pair%point_i))%phi%v + pair%alpha*angle_unit(d%s)
-            p = world(d, pair%point_j) - world(d, pair%point_i)
-            value = p(1)*cos(theta) + p(2)*sin(theta)
-         end associate
-      end select
-   end function value_now
 
    !> A polynomial, mostly with a term, that makes a way of about `amplitude` between the first and the last instant.
    subroutine make_law(d, law, amplitude)
@@ -157,12 +132,14 @@ contains
       type(draft_t), intent(inout) :: d
       real(qp), intent(in) :: way
       type(law_t) :: law
+      type(jet_t) :: now
       real(qp) :: unit
 
       associate (drive => d%s%drives(size(d%s%drives)))
          unit = drive_unit(d%s, drive)
          law%polynomial(2) = double(way/unit/(d%to - d%from))
-         law%polynomial(1) = double(value_now(d, drive)/unit - law%polynomial(2)*d%t)
+         now = driven(d%s, drive, d%b)
+         law%polynomial(1) = double(now%v/unit - law%polynomial(2)*d%t)
          drive%law = law
       end associate
    end subroutine set_steady

@@ -1,9 +1,8 @@
 !> Tests. The five dyads and the parallelogram in closed form: two links l1 and l2 on known links e and f, by pairs
 !> e-l1, l1-l2 and l2-f. Plane trigonometry with jets in real128.
 module dyad_forms
-   use quad_jet, only: qp, jet_t, pi_q, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, &
-      cos, &
-      atan2
+   use quad_jet, only: qp, jet_t, pi_q, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, &
+      sin, cos, atan2
    use schemes, only: scheme_t, group_t, pair_t, body_t, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, angle_unit, &
       point_on, place, set_trigonometry
    implicit none
@@ -26,23 +25,116 @@ contains
       type(body_t), intent(inout) :: b(:)
       type(jet_t), intent(out) :: margin
       type(body_t) :: two(2)
+      type(pair_t) :: first, middle, last
+      type(jet_t) :: p(2), q(2), c(2)              !< joints: on link e, on link f, between l1 and l2
+      real(qp) :: a1(2), c1(2), c2(2), b2(2)       !< xi and eta: of p and c on l1, of c and q on l2
       integer :: l
 
       l = g%links(1)
       two = b(l:l + 1)
+      first = s%pairs(g%pairs(1))
+      middle = s%pairs(g%pairs(1) + 1)
+      last = s%pairs(g%pairs(1) + 2)
+      p = base_place(s, b, first, l)
+      q = base_place(s, b, last, l + 1)
+      a1 = own(s, first, l)
+      c1 = own(s, middle, l)
+      c2 = own(s, middle, l + 1)
+      b2 = own(s, last, l + 1)
       select case (g%form)
       case (form_rrr)
-         call solve_rrr(s, g, b, two, margin)
+         call solve_rrr()
       case (form_rrp)
-         call solve_rrp(s, g, b, two, margin)
+         call solve_rrp()
       case (form_rpr)
-         call solve_rpr(s, g, b, two, margin)
+         call solve_rpr()
       case (form_prp)
-         call solve_prp(s, g, b, two, margin)
+         call solve_prp()
       case (form_rpp)
-         call solve_rpp(s, g, b, two, margin)
+         call solve_rpp()
       end select
       if (margin%v > 0.0_qp) b(l:l + 1) = two
+
+   contains
+
+      subroutine solve_rrr()
+         type(jet_t) :: square, u, v, excess
+         real(qp) :: r, t
+
+         r = norm2(c1 - a1)
+         t = norm2(b2 - c2)
+         ! The square of the sine of the angle between the two rods.
+         square = (q(1) - p(1))*(q(1) - p(1)) + (q(2) - p(2))*(q(2) - p(2))
+         excess = (r**2 + t**2 - square)/(2.0_qp*r*t)
+         margin = 1.0_qp - excess*excess
+         if (.not. margin%v > 0.0_qp) return
+         ! The corner at r from p and t from q.
+         u = (square + (r**2 - t**2))/(2.0_qp*square)
+         v = g%side*sqrt(r**2/square - u*u)
+         c = [p(1) + (u*(q(1) - p(1)) - v*(q(2) - p(2))), p(2) + (u*(q(2) - p(2)) + v*(q(1) - p(1)))]
+         call point_rod(two(1), p, a1, c, c1)
+         call point_rod(two(2), c, c2, q, b2)
+      end subroutine solve_rrr
+
+      subroutine solve_rrp()
+         type(line_t) :: line
+         type(jet_t) :: across, along
+         real(qp) :: r
+
+         line = guide_line(s, last, b(other_link(s, last, l + 1)), l + 1, c2, two(2)%phi%v)
+         r = norm2(c1 - a1)
+         across = p(2)*line%c - p(1)*line%s - line%w
+         margin = 1.0_qp - across*across/r**2
+         if (.not. margin%v > 0.0_qp) return
+         along = p(1)*line%c + p(2)*line%s + g%side*sqrt(r**2 - across*across)
+         c = [along*line%c - line%w*line%s, along*line%s + line%w*line%c]
+         call point_rod(two(1), p, a1, c, c1)
+         call put(two(2), line%phi, c, c2)
+      end subroutine solve_rrp
+
+      subroutine solve_rpr()
+         type(jet_t) :: square, theta, turned(2)
+         real(qp) :: angle(2), distance
+         integer :: i
+
+         ! The guide along x: the angles of both links, and the heights of their points of the guide over A and B.
+         i = s%points(middle%point_i)%link - l + 1
+         angle(i) = -middle%alpha*angle_unit(s)
+         angle(3 - i) = angle(i) + middle%beta*angle_unit(s)
+         distance = height(c1 - a1, angle(1)) - height(c2 - b2, angle(2)) + merge(-middle%h, middle%h, i == 1)
+         square = (q(1) - p(1))*(q(1) - p(1)) + (q(2) - p(2))*(q(2) - p(2))
+         margin = (square - distance**2)/g%scale**2
+         if (.not. margin%v > 0.0_qp) return
+         theta = atan2(q(2) - p(2), q(1) - p(1)) - atan2(constant_jet(distance), g%side*sqrt(square - distance**2))
+         turned(1) = without_turns(theta + angle(1), two(1)%phi%v)
+         turned(2) = turned(1) + (angle(2) - angle(1))
+         call put(two(1), turned(1), p, a1)
+         call put(two(2), turned(2), q, b2)
+      end subroutine solve_rpr
+
+      subroutine solve_prp()
+         type(line_t) :: line(2)
+
+         line(1) = guide_line(s, first, b(other_link(s, first, l)), l, c1, two(1)%phi%v)
+         line(2) = guide_line(s, last, b(other_link(s, last, l + 1)), l + 1, c2, two(2)%phi%v)
+         call cross(line, c, margin)
+         if (.not. margin%v > 0.0_qp) return
+         call put(two(1), line(1)%phi, c, c1)
+         call put(two(2), line(2)%phi, c, c2)
+      end subroutine solve_prp
+
+      subroutine solve_rpp()
+         type(line_t) :: line(2)
+         real(qp), parameter :: origin(2) = 0.0_qp
+         type(jet_t) :: phi
+
+         line(1) = guide_line(s, last, b(other_link(s, last, l + 1)), l + 1, origin, two(2)%phi%v)
+         phi = line(1)%phi + merge(-1.0_qp, 1.0_qp, s%points(middle%point_i)%link == l)*middle%beta*angle_unit(s)
+         call put(two(1), without_turns(phi, two(1)%phi%v), p, a1)
+         line(2) = guide_line(s, middle, two(1), l + 1, origin, two(2)%phi%v)
+         call cross(line, c, margin)
+         if (margin%v > 0.0_qp) call put(two(2), line(1)%phi, c, origin)
+      end subroutine solve_rpp
    end subroutine solve_dyad
 
    !> The sign of the assembly in `s%links%at`, with all bodies of `b` there.
@@ -65,153 +157,6 @@ contains
       end do
       g%side = merge(1.0_qp, -1.0_qp, off(1) < off(2))
    end subroutine choose_side
-
-   subroutine solve_rrr(s, g, b, two, margin)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(body_t), intent(inout) :: two(2)
-      type(jet_t), intent(out) :: margin
-      type(jet_t) :: p(2), q(2), c(2), square, u, v, excess
-      real(qp) :: a1(2), c1(2), c2(2), b2(2), r, t
-      integer :: l
-
-      l = g%links(1)
-      associate (k => g%pairs(1))
-         p = base_place(s, b, s%pairs(k), l)
-         q = base_place(s, b, s%pairs(k + 2), l + 1)
-         a1 = own(s, s%pairs(k), l)
-         c1 = own(s, s%pairs(k + 1), l)
-         c2 = own(s, s%pairs(k + 1), l + 1)
-         b2 = own(s, s%pairs(k + 2), l + 1)
-      end associate
-      r = norm2(c1 - a1)
-      t = norm2(b2 - c2)
-      ! The square of the sine of the angle between the two rods.
-      square = (q(1) - p(1))*(q(1) - p(1)) + (q(2) - p(2))*(q(2) - p(2))
-      excess = (r**2 + t**2 - square)/(2.0_qp*r*t)
-      margin = 1.0_qp - excess*excess
-      if (.not. margin%v > 0.0_qp) return
-      ! The corner at r from p and t from q.
-      u = (square + (r**2 - t**2))/(2.0_qp*square)
-      v = g%side*sqrt(r**2/square - u*u)
-      c = [p(1) + (u*(q(1) - p(1)) - v*(q(2) - p(2))), p(2) + (u*(q(2) - p(2)) + v*(q(1) - p(1)))]
-      call point_rod(two(1), p, a1, c, c1)
-      call point_rod(two(2), c, c2, q, b2)
-   end subroutine solve_rrr
-
-   subroutine solve_rrp(s, g, b, two, margin)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(body_t), intent(inout) :: two(2)
-      type(jet_t), intent(out) :: margin
-      type(jet_t) :: p(2), c(2), across, along
-      type(line_t) :: line
-      real(qp) :: a1(2), c1(2), c2(2), r
-      integer :: l
-
-      l = g%links(1)
-      associate (k => g%pairs(1))
-         p = base_place(s, b, s%pairs(k), l)
-         a1 = own(s, s%pairs(k), l)
-         c1 = own(s, s%pairs(k + 1), l)
-         c2 = own(s, s%pairs(k + 1), l + 1)
-         line = guide_line(s, s%pairs(k + 2), b(other_link(s, s%pairs(k + 2), l + 1)), l + 1, c2, two(2)%phi%v)
-      end associate
-      r = norm2(c1 - a1)
-      across = p(2)*line%c - p(1)*line%s - line%w
-      margin = 1.0_qp - across*across/r**2
-      if (.not. margin%v > 0.0_qp) return
-      along = p(1)*line%c + p(2)*line%s + g%side*sqrt(r**2 - across*across)
-      c = [along*line%c - line%w*line%s, along*line%s + line%w*line%c]
-      call point_rod(two(1), p, a1, c, c1)
-      call put(two(2), line%phi, c, c2)
-   end subroutine solve_rrp
-
-   subroutine solve_rpr(s, g, b, two, margin)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(body_t), intent(inout) :: two(2)
-      type(jet_t), intent(out) :: margin
-      type(jet_t) :: p(2), q(2), square, theta, turned(2)
-      real(qp) :: a1(2), b2(2), angle(2), from_a, from_b, distance
-      integer :: l, i
-
-      l = g%links(1)
-      associate (k => g%pairs(1), guide => s%pairs(g%pairs(1) + 1))
-         p = base_place(s, b, s%pairs(k), l)
-         q = base_place(s, b, s%pairs(k + 2), l + 1)
-         a1 = own(s, s%pairs(k), l)
-         b2 = own(s, s%pairs(k + 2), l + 1)
-         ! The guide along x: the angles of both links, and the heights of their points of the guide over A and B.
-         i = s%points(guide%point_i)%link - l + 1
-         angle(i) = -guide%alpha*angle_unit(s)
-         angle(3 - i) = angle(i) + guide%beta*angle_unit(s)
-         from_a = height(own(s, guide, l) - a1, angle(1))
-         from_b = height(own(s, guide, l + 1) - b2, angle(2))
-         distance = from_a - from_b + merge(-guide%h, guide%h, i == 1)
-      end associate
-      square = (q(1) - p(1))*(q(1) - p(1)) + (q(2) - p(2))*(q(2) - p(2))
-      margin = (square - distance**2)/g%scale**2
-      if (.not. margin%v > 0.0_qp) return
-      theta = atan2(q(2) - p(2), q(1) - p(1)) - atan2(constant_jet(distance), g%side*sqrt(square - distance**2))
-      turned(1) = theta + angle(1)
-      turned(1) = turned(1) + 2.0_qp*pi_q*anint((two(1)%phi%v - turned(1)%v)/(2.0_qp*pi_q))
-      turned(2) = turned(1) + (angle(2) - angle(1))
-      call put(two(1), turned(1), p, a1)
-      call put(two(2), turned(2), q, b2)
-   end subroutine solve_rpr
-
-   subroutine solve_prp(s, g, b, two, margin)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(body_t), intent(inout) :: two(2)
-      type(jet_t), intent(out) :: margin
-      type(jet_t) :: c(2)
-      type(line_t) :: line(2)
-      real(qp) :: own_joint(2, 2)
-      integer :: l, k, pair
-
-      l = g%links(1)
-      do k = 1, 2
-         pair = g%pairs(1) + merge(0, 2, k == 1)
-         own_joint(:, k) = own(s, s%pairs(g%pairs(1) + 1), l + k - 1)
-         line(k) = guide_line(s, s%pairs(pair), b(other_link(s, s%pairs(pair), l + k - 1)), l + k - 1, own_joint(:, &
-            k), &
-            two(k)%phi%v)
-      end do
-      call cross(line, c, margin)
-      if (.not. margin%v > 0.0_qp) return
-      do k = 1, 2
-         call put(two(k), line(k)%phi, c, own_joint(:, k))
-      end do
-   end subroutine solve_prp
-
-   subroutine solve_rpp(s, g, b, two, margin)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(body_t), intent(inout) :: two(2)
-      type(jet_t), intent(out) :: margin
-      type(jet_t) :: c(2), phi
-      type(line_t) :: line(2)
-      integer :: l
-
-      l = g%links(1)
-      associate (k => g%pairs(1), guide => s%pairs(g%pairs(1) + 1))
-         line(1) = guide_line(s, s%pairs(k + 2), b(other_link(s, s%pairs(k + 2), l + 1)), l + 1, [0.0_qp, 0.0_qp], &
-            two(2)%phi%v)
-         phi = line(1)%phi + merge(-1.0_qp, 1.0_qp, s%points(guide%point_i)%link == l)*guide%beta*angle_unit(s)
-         phi = phi + 2.0_qp*pi_q*anint((two(1)%phi%v - phi%v)/(2.0_qp*pi_q))
-         call put(two(1), phi, base_place(s, b, s%pairs(k), l), own(s, s%pairs(k), l))
-         line(2) = guide_line(s, guide, two(1), l + 1, [0.0_qp, 0.0_qp], two(2)%phi%v)
-      end associate
-      call cross(line, c, margin)
-      if (margin%v > 0.0_qp) call put(two(2), line(1)%phi, c, [0.0_qp, 0.0_qp])
-   end subroutine solve_rpp
 
    !> A parallelogram with bars 1 and 2 and coupler, which stays parallel to its base, or the antiparallelogram: the
    !> coupler's far joint is mirrored in the line from bar 1's joint to bar 2's pivot. More bars go along with bar 1.
@@ -247,9 +192,8 @@ contains
          do k = 3, g%links(2) - l
             pair = first + 2*k - 2
             p = base_place(s, b, s%pairs(pair + 1), l + k)
-            call point_rod(b(l + k), p, own(s, s%pairs(pair + 1), l + k), place(b(l + 1), own(s, s%pairs(pair), &
-               l + 1)), &
-               own(s, s%pairs(pair), l + k))
+            call point_rod(b(l + k), p, own(s, s%pairs(pair + 1), l + k), &
+               place(b(l + 1), own(s, s%pairs(pair), l + 1)), own(s, s%pairs(pair), l + k))
          end do
       end associate
    end subroutine place_parallelogram
@@ -319,7 +263,7 @@ contains
          theta = known%phi + pair%alpha*angle_unit(s)
          fixed = place(known, s%points(pair%point_i)%offset)
       end if
-      line%phi = line%phi + 2.0_qp*pi_q*anint((near - line%phi%v)/(2.0_qp*pi_q))
+      line%phi = without_turns(line%phi, near)
       line%c = cos(theta)
       line%s = sin(theta)
       turned%phi = line%phi
@@ -328,6 +272,14 @@ contains
       arm = (offset(1)*turned%s + offset(2)*turned%c)*line%c - (offset(1)*turned%c - offset(2)*turned%s)*line%s
       line%w = fixed(2)*line%c - fixed(1)*line%s + merge(pair%h, -pair%h, on_slider) + arm
    end function guide_line
+
+   !> `phi` less or more whole turns, so that it is next to `near`.
+   pure type(jet_t) function without_turns(phi, near)
+      type(jet_t), intent(in) :: phi
+      real(qp), intent(in) :: near
+
+      without_turns = phi + 2.0_qp*pi_q*anint((near - phi%v)/(2.0_qp*pi_q))
+   end function without_turns
 
    !> Where two lines cross; `margin`: the square of the sine of their angle.
    subroutine cross(line, c, margin)
@@ -350,7 +302,7 @@ contains
       type(jet_t) :: phi
 
       phi = atan2(q(2) - p(2), q(1) - p(1)) - atan2(v(2) - u(2), v(1) - u(1))
-      call put(b, phi + 2.0_qp*pi_q*anint((b%phi%v - phi%v)/(2.0_qp*pi_q)), p, u)
+      call put(b, without_turns(phi, b%phi%v), p, u)
    end subroutine point_rod
 
    !> The link at the angle `phi` whose point `u` lies at `p`.

@@ -2,13 +2,13 @@
 !> Jacobian in real64, for positions, velocities and accelerations at once, as jets.
 module group_newton
    use, intrinsic :: iso_fortran_env, only: real64
-   use quad_jet, only: qp, jet_t, operator(+), operator(-), operator(*), sin, cos
-   use schemes, only: scheme_t, group_t, pair_t, body_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, &
+   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), sin, cos
+   use schemes, only: scheme_t, group_t, pair_t, drive_t, body_t, drive_angle, drive_relangle, drive_x, drive_slide, &
       angle_unit, drive_unit, link_at, place, set_trigonometry
    use drive_laws, only: law_jet
    implicit none
    private
-   public :: outcome_t, solve_group, residuals
+   public :: outcome_t, solve_group, residuals, driven
 
    !> What an iteration was like; lengths in units of the group's.
    type :: outcome_t
@@ -99,7 +99,10 @@ contains
          r(2*k - 1:2*k) = pair_residuals(s, s%pairs(g%pairs(1) + k - 1), b, g%scale)
       end do
       do k = g%drives(1), g%drives(2)
-         r(2*pairs + k - g%drives(1) + 1) = drive_residual(s, k, t, b, g%scale)
+         associate (drive => s%drives(k), row => r(2*pairs + k - g%drives(1) + 1))
+            row = driven(s, drive, b) - law_jet(drive%law, t, drive_unit(s, drive), angle_unit(s))
+            if (drive%kind > drive_relangle) row = (1.0_qp/g%scale)*row
+         end associate
       end do
    end function residuals
 
@@ -123,153 +126,77 @@ contains
       end if
    end function pair_residuals
 
-   function drive_residual(s, k, t, b, scale) result(r)
+   !> What `drive` moves: an angle in radians or a length.
+   type(jet_t) function driven(s, drive, b) result(x)
       type(scheme_t), intent(in) :: s
-      integer, intent(in) :: k
-      real(qp), intent(in) :: t, scale
+      type(drive_t), intent(in) :: drive
       type(body_t), intent(in) :: b(:)
-      type(jet_t) :: r, f, p(2), d(2), theta
+      type(jet_t) :: p(2), theta
 
-      associate (drive => s%drives(k))
-         f = law_jet(drive%law, t, drive_unit(s, drive), angle_unit(s))
-         select case (drive%kind)
-         case (drive_angle)
-            r = b(drive%subject)%phi - f
-         case (drive_relangle)
-            r = b(drive%second)%phi - b(drive%subject)%phi - f
-         case (drive_x, drive_y)
-            p = place(b(link_at(s, drive%subject)), s%points(drive%subject)%offset)
-            if (drive%kind == drive_x) then
-               r = (1.0_qp/scale)*(p(1) - f)
-            else
-               r = (1.0_qp/scale)*(p(2) - f)
-            end if
-         case (drive_slide)
-            associate (pair => s%pairs(drive%subject))
-               d = place(b(link_at(s, pair%point_j)), s%points(pair%point_j)%offset) &
-                  - place(b(link_at(s, pair%point_i)), s%points(pair%point_i)%offset)
-               theta = b(link_at(s, pair%point_i))%phi + pair%alpha*angle_unit(s)
-               r = (1.0_qp/scale)*(d(1)*cos(theta) + d(2)*sin(theta) - f)
-            end associate
-         end select
-      end associate
-   end function drive_residual
+      select case (drive%kind)
+      case (drive_angle)
+         x = b(drive%subject)%phi
+      case (drive_relangle)
+         x = b(drive%second)%phi - b(drive%subject)%phi
+      case (drive_slide)
+         associate (pair => s%pairs(drive%subject))
+            p = place(b(link_at(s, pair%point_j)), s%points(pair%point_j)%offset) &
+               - place(b(link_at(s, pair%point_i)), s%points(pair%point_i)%offset)
+            theta = b(link_at(s, pair%point_i))%phi + pair%alpha*angle_unit(s)
+            x = p(1)*cos(theta) + p(2)*sin(theta)
+         end associate
+      case default
+         p = place(b(link_at(s, drive%subject)), s%points(drive%subject)%offset)
+         x = p(merge(1, 2, drive%kind == drive_x))
+      end select
+   end function driven
 
-   !> Derivatives of the residuals by x/scale, y/scale and phi of the group's links.
+   !> Derivatives of the residuals by x/scale, y/scale and phi of the group's links: what they do at unit rates.
    function jacobian(s, g, b) result(a)
       type(scheme_t), intent(in) :: s
       type(group_t), intent(in) :: g
       type(body_t), intent(in) :: b(:)
       real(real64), allocatable :: a(:, :)
-      integer :: n, k, row
+      type(body_t) :: moving(size(b))
+      type(jet_t) :: r(2)
+      integer :: pairs, k, l, c, column
 
-      n = 3*(g%links(2) - g%links(1) + 1)
-      allocate (a(n, n), source=0.0_real64)
-      do k = g%pairs(1), g%pairs(2)
-         row = 2*(k - g%pairs(1)) + 1
-         if (s%pairs(k)%prismatic) then
-            call slide_row(s, g, b, s%pairs(k), .false., a(row, :))
-            call add(a(row + 1, :), g, link_at(s, s%pairs(k)%point_j), 3, 1.0_real64)
-            call add(a(row + 1, :), g, link_at(s, s%pairs(k)%point_i), 3, -1.0_real64)
-         else
-            call place_row(s, g, b, s%pairs(k)%point_i, 1.0_real64, [1.0_real64, 0.0_real64], a(row, :))
-            call place_row(s, g, b, s%pairs(k)%point_j, -1.0_real64, [1.0_real64, 0.0_real64], a(row, :))
-            call place_row(s, g, b, s%pairs(k)%point_i, 1.0_real64, [0.0_real64, 1.0_real64], a(row + 1, :))
-            call place_row(s, g, b, s%pairs(k)%point_j, -1.0_real64, [0.0_real64, 1.0_real64], a(row + 1, :))
+      moving%x = constant_jet(b%x%v)
+      moving%y = constant_jet(b%y%v)
+      moving%phi = constant_jet(b%phi%v)
+      moving%c = constant_jet(b%c%v)
+      moving%s = constant_jet(b%s%v)
+      pairs = g%pairs(2) - g%pairs(1) + 1
+      allocate (a(2*pairs + g%drives(2) - g%drives(1) + 1, 3*(g%links(2) - g%links(1) + 1)), source=0.0_real64)
+      do column = 1, size(a, 2)
+         l = g%links(1) + (column - 1)/3
+         c = 1 + modulo(column - 1, 3)
+         associate (body => moving(l))
+            body%x%d = merge(g%scale, 0.0_qp, c == 1)
+            body%y%d = merge(g%scale, 0.0_qp, c == 2)
+            body%phi%d = merge(1.0_qp, 0.0_qp, c == 3)
+            body%c%d = -body%s%v*body%phi%d
+            body%s%d = body%c%v*body%phi%d
+         end associate
+         do k = 1, pairs
+            associate (pair => s%pairs(g%pairs(1) + k - 1))
+               if (all([link_at(s, pair%point_i), link_at(s, pair%point_j)] /= l)) cycle
+               r = pair_residuals(s, pair, moving, g%scale)
+               a(2*k - 1:2*k, column) = real(r%d, real64)
+            end associate
+         end do
+         do k = g%drives(1), g%drives(2)
+            r(1) = driven(s, s%drives(k), moving)
+            if (s%drives(k)%kind > drive_relangle) r(1) = (1.0_qp/g%scale)*r(1)
+            a(2*pairs + k - g%drives(1) + 1, column) = real(r(1)%d, real64)
+         end do
+         if (c == 3) then
+            moving(l)%phi%d = 0.0_qp
+            moving(l)%c%d = 0.0_qp
+            moving(l)%s%d = 0.0_qp
          end if
       end do
-      do k = g%drives(1), g%drives(2)
-         row = 2*(g%pairs(2) - g%pairs(1) + 1) + k - g%drives(1) + 1
-         associate (drive => s%drives(k))
-            select case (drive%kind)
-            case (drive_angle)
-               call add(a(row, :), g, drive%subject, 3, 1.0_real64)
-            case (drive_relangle)
-               call add(a(row, :), g, drive%second, 3, 1.0_real64)
-               call add(a(row, :), g, drive%subject, 3, -1.0_real64)
-            case (drive_x)
-               call place_row(s, g, b, drive%subject, 1.0_real64, [1.0_real64, 0.0_real64], a(row, :))
-            case (drive_y)
-               call place_row(s, g, b, drive%subject, 1.0_real64, [0.0_real64, 1.0_real64], a(row, :))
-            case (drive_slide)
-               call slide_row(s, g, b, s%pairs(drive%subject), .true., a(row, :))
-            end select
-         end associate
-      end do
    end function jacobian
-
-   !> Adds to `row` the derivative by coordinate `c` of `link`, where that is one of the group.
-   pure subroutine add(row, g, link, c, value)
-      real(real64), intent(inout) :: row(:)
-      type(group_t), intent(in) :: g
-      integer, intent(in) :: link, c
-      real(real64), intent(in) :: value
-
-      if (link < g%links(1) .or. link > g%links(2)) return
-      associate (k => 3*(link - g%links(1)) + c)
-         row(k) = row(k) + value
-      end associate
-   end subroutine add
-
-   !> `factor` times the derivative of the place of `point` in the direction `e`.
-   pure subroutine place_row(s, g, b, point, factor, e, row)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      integer, intent(in) :: point
-      real(real64), intent(in) :: factor, e(2)
-      real(real64), intent(inout) :: row(:)
-      real(real64) :: u(2)
-
-      associate (link => s%points(point)%link)
-         u = arm(s, b, point)/real(g%scale, real64)
-         call add(row, g, link, 1, factor*e(1))
-         call add(row, g, link, 2, factor*e(2))
-         call add(row, g, link, 3, factor*(e(2)*u(1) - e(1)*u(2)))
-      end associate
-   end subroutine place_row
-
-   !> From the origin of its link to `point`.
-   pure function arm(s, b, point) result(u)
-      type(scheme_t), intent(in) :: s
-      type(body_t), intent(in) :: b(:)
-      integer, intent(in) :: point
-      real(real64) :: u(2)
-
-      associate (o => s%points(point)%offset, c => b(s%points(point)%link)%c%v, s_ => b(s%points(point)%link)%s%v)
-         u = real([o(1)*c - o(2)*s_, o(1)*s_ + o(2)*c], real64)
-      end associate
-   end function arm
-
-   !> Of (P - Q) . n, or of the slide (Q - P) . e.
-   pure subroutine slide_row(s, g, b, pair, is_slide, row)
-      type(scheme_t), intent(in) :: s
-      type(group_t), intent(in) :: g
-      type(body_t), intent(in) :: b(:)
-      type(pair_t), intent(in) :: pair
-      logical, intent(in) :: is_slide
-      real(real64), intent(inout) :: row(:)
-      real(real64) :: e(2), n(2), d(2), theta
-      type(jet_t) :: p(2), q(2)
-      integer :: i
-
-      i = s%points(pair%point_i)%link
-      theta = real(b(i)%phi%v + pair%alpha*angle_unit(s), real64)
-      e = [cos(theta), sin(theta)]
-      n = [-e(2), e(1)]
-      p = place(b(i), s%points(pair%point_i)%offset)
-      q = place(b(s%points(pair%point_j)%link), s%points(pair%point_j)%offset)
-      d = real([p(1)%v - q(1)%v, p(2)%v - q(2)%v]/g%scale, real64)
-      if (is_slide) then
-         call place_row(s, g, b, pair%point_i, -1.0_real64, e, row)
-         call place_row(s, g, b, pair%point_j, 1.0_real64, e, row)
-         call add(row, g, i, 3, -dot_product(d, n))
-      else
-         call place_row(s, g, b, pair%point_i, 1.0_real64, n, row)
-         call place_row(s, g, b, pair%point_j, -1.0_real64, n, row)
-         call add(row, g, i, 3, -dot_product(d, e))
-      end if
-   end subroutine slide_row
 
    !> `a` becomes its inverse, by Gauss and Jordan with exchanges of rows; `sign`: that of its determinant, 0 where it
    !> has none.
