@@ -12,6 +12,8 @@ BUILD=${BUILD:-build}
 work=$BUILD/mechanisms
 driver=$BUILD/release/fuzz_mechanisms
 chunk=${FUZZ_CHUNK:-200}
+jobs=${FUZZ_JOBS:-$(nproc)}
+decks=
 # Seeds that have found faults: a parallelogram of four cranks with links of a hundredth of its size in one block, whose
 # velocities were worse than told; a small dyad on a long link, turned by the wrong angle of that one; a limit where the
 # drive is slow; the other branch of a parallelogram that a dyad near its dead point builds on; a substep that ended next to
@@ -21,58 +23,16 @@ chunk=${FUZZ_CHUNK:-200}
 known='668292 1010852 1004109 739164 1032987 695632 9040787 9651168 9597347 10034684 17000996 9906375 10091989'
 mkdir -p "$work" || exit 3
 
-# run_chunk FIRST LAST: the driver again behind every seed at which it does not come back
-run_chunk() {
-   first=$1
-   last=$2
-   place=$(mktemp -d "$work/chunk.XXXXXX") || exit 3
-   while [ "$first" -le "$last" ]; do
-      "$driver" "$first" "$last" "$place" > "$place/out" 2> "$place/err"
-      cat "$place/out"
-      grep -q '^SUMS ' "$place/out" && break
-      seed=$(head -n 1 "$place/seed" 2> /dev/null)
-      if [ -z "$seed" ]; then
-         echo "FAILED: SEED $first: THE DRIVER DOES NOT START: $(head -n 1 "$place/err")"
-         echo CRASHED
-         break
-      fi
-      grep '^SUMS ' "$place/seed"
-      echo "FAILED: SEED $seed: THE PROGRAM DOES NOT COME BACK: $(grep -m 1 . "$place/err")"
-      echo CRASHED
-      cp "$place/deck" "$place/$seed.deck"
-      first=$((seed + 1))
-   done
-   find "$place" -name '[0-9]*.deck' -exec mv {} "$work/" ';'
-   rm -rf "$place"
-}
+. tests/fuzz/chunks.sh
 
-case $1 in
---chunk)
-   run_chunk "$2" "$3"
-   exit 0
-   ;;
---seed)
+if [ "$1" = --seed ]; then
    "$driver" --deck "$2" "$work/$2.deck" || exit 3
    echo "$work/$2.deck"
    run_chunk "$2" "$2"
    exit
-   ;;
-esac
+fi
 
-count=${1:-1000}
-first=${2:-1}
-last=$((first + count - 1))
-{
-   for a in $known; do
-      echo "$a $a"
-   done
-   seq "$first" "$chunk" "$last" | while read -r a; do
-      b=$((a + chunk - 1))
-      [ "$b" -gt "$last" ] && b=$last
-      echo "$a $b"
-   done
-} | xargs -P "${FUZZ_JOBS:-$(nproc)}" -n 2 "$0" --chunk > "$work/results"
-
+run_seeds "${1:-1000}" "${2:-1}"
 grep '^FAILED' "$work/results" | sort -k 3 -n
 awk '
    $1 == "SUMS" { for (i = 1; i <= 9; i++) sum[i] += $(1 + i)
