@@ -5,8 +5,8 @@ module draft_drives
    use quad_jet, only: qp, pi_q, jet_t
    use dice, only: throw, chance
    use schemes, only: drive_t, angle_unit, drive_unit, double
-   use drive_laws, only: law_t, law_jet, term_harmonic, term_power, term_table, term_rise
-   use rise_laws, only: rise_words
+   use mechanism, only: term_harmonic, term_power, term_table, term_cycloid
+   use drive_laws, only: law_t, law_jet
    use group_newton, only: driven
    use scheme_draft, only: draft_t, number, add_point, anywhere
    implicit none
@@ -116,8 +116,7 @@ contains
       type(law_t), intent(inout) :: law
       real(qp), intent(in) :: amplitude
 
-      law%form = term_rise
-      law%word = rise_words(throw(d%dice, 4))
+      law%form = term_cycloid + throw(d%dice, 4) - 1
       associate (span => d%to - d%from)
          law%r(1) = double(d%from + number(d, -0.2_qp, 0.7_qp)*span)
          if (chance(d%dice, 0.3_wp)) law%r(1) = double(d%from)

@@ -4,8 +4,9 @@ module draft_groups
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
    use dice, only: throw, chance
-   use schemes, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide, form_any, form_rrr, form_rrp, &
-      form_rpr, form_prp, form_rpp, form_parallelogram, double, point_t, pair_t, set_trigonometry
+   use mechanism, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide
+   use schemes, only: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram, double, point_t, &
+      pair_t, set_trigonometry
    use scheme_draft, only: draft_t, number, square, anywhere, add_link, add_links, join, pick_base, place_on_base, &
       begin_group
    use draft_drives, only: add_drive, add_point_drive, set_steady

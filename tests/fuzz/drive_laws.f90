@@ -1,23 +1,17 @@
 !> Tests. The laws of drives as jets in real128, from the numbers of the deck: a polynomial and one term of each form.
 module drive_laws
    use quad_jet, only: qp, jet_t, time_jet, operator(+), operator(-), operator(*), sin
-   use rise_laws, only: rise_jet, fine_joint_part
-   use mechanism, only: power => term_power, table => term_table
+   use mechanism, only: term_harmonic, term_table
    use jet_drives, only: term_jet
    implicit none
    private
-   public :: law_t, law_jet, variation, term_harmonic, term_power, term_table, term_rise
-
-   enum, bind(c)
-      enumerator :: term_none, term_harmonic, term_power, term_table, term_rise
-   end enum
+   public :: law_t, law_jet, variation
 
    !> R1 + R2 t + R3 t**2/2 and a term, in the deck's units.
    type :: law_t
       real(qp) :: polynomial(3) = 0.0_qp
-      integer :: form = term_none
-      real(qp) :: r(3) = 0.0_qp                !< R1, R2, R3 of HARMONIC, POWER or RISE
-      character(8) :: word = ''                !< the law of a RISE
+      integer :: form = 0                      !< of the term: term_harmonic, ..., term_parabola; 0: there is none
+      real(qp) :: r(3) = 0.0_qp                !< R1, R2, R3 of its card
       real(qp), allocatable :: time(:), value(:) !< rows of a table
    end type law_t
 
@@ -33,16 +27,13 @@ contains
       associate (p => law%polynomial)
          f = jet_t(p(1) + t*(p(2) + t*p(3)/2.0_qp), p(2) + t*p(3), p(3))
       end associate
-      select case (law%form)
-      case (term_harmonic)
+      if (law%form == term_harmonic) then
          f = f + law%r(1)*sin(phase_unit*(law%r(2)*time_jet(t) + law%r(3)))
-      case (term_power)
-         f = f + term_jet(power, law%r, [real(qp) ::], [real(qp) ::], t)
-      case (term_table)
-         f = f + term_jet(table, law%r, law%time, law%value, t)
-      case (term_rise)
-         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t, fine_joint_part)
-      end select
+      else if (law%form == term_table) then
+         f = f + term_jet(law%form, law%r, law%time, law%value, t)
+      else if (law%form > 0) then
+         f = f + term_jet(law%form, law%r, [real(qp) ::], [real(qp) ::], t)
+      end if
       f = angle_unit*f
    end function law_jet
 

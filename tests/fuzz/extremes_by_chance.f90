@@ -7,7 +7,8 @@ program extremes_by_chance
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos
    use rise_laws, only: rise_jet, rise_words
-   use drive_laws, only: law_t, law_jet, term_harmonic, term_table
+   use mechanism, only: term_harmonic, term_table
+   use drive_laws, only: law_t, law_jet
    use dice, only: dice_t, new_dice, between, chance, throw
    use arguments, only: argument, number
    implicit none

@@ -3,8 +3,9 @@
 module group_newton
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), sin, cos
-   use schemes, only: scheme_t, group_t, pair_t, drive_t, body_t, drive_angle, drive_relangle, drive_x, drive_slide, &
-      angle_unit, drive_unit, link_at, place, set_trigonometry
+   use mechanism, only: drive_angle, drive_relangle, drive_x, drive_slide
+   use schemes, only: scheme_t, group_t, pair_t, drive_t, body_t, angle_unit, is_angle, drive_unit, link_at, place, &
+      set_trigonometry
    use drive_laws, only: law_jet
    implicit none
    private
@@ -101,7 +102,7 @@ contains
       do k = g%drives(1), g%drives(2)
          associate (drive => s%drives(k), row => r(2*pairs + k - g%drives(1) + 1))
             row = driven(s, drive, b) - law_jet(drive%law, t, drive_unit(s, drive), angle_unit(s))
-            if (drive%kind > drive_relangle) row = (1.0_qp/g%scale)*row
+            if (.not. is_angle(drive)) row = (1.0_qp/g%scale)*row
          end associate
       end do
    end function residuals
@@ -187,7 +188,7 @@ contains
          end do
          do k = g%drives(1), g%drives(2)
             r(1) = driven(s, s%drives(k), moving)
-            if (s%drives(k)%kind > drive_relangle) r(1) = (1.0_qp/g%scale)*r(1)
+            if (.not. is_angle(s%drives(k))) r(1) = (1.0_qp/g%scale)*r(1)
             a(2*pairs + k - g%drives(1) + 1, column) = real(r(1)%d, real64)
          end do
          if (c == 3) then

@@ -5,8 +5,9 @@ module random_schemes
    use disjoint_sets, only: joined
    use quad_jet, only: qp
    use dice, only: dice_t, new_dice, throw, chance, between, magnitude
-   use schemes, only: scheme_t, pair_t, measure_t, measure_line, measure_angle, measure_xi, measure_sum, drive_t, &
-      drive_angle, drive_relangle, drive_x, drive_y, angle_unit, link_at, double
+   use mechanism, only: measure_line, measure_angle, measure_xi, measure_sum, drive_angle, drive_relangle, drive_x, &
+      drive_y
+   use schemes, only: scheme_t, pair_t, measure_t, drive_t, angle_unit, link_at, double
    use scheme_draft, only: draft_t, new_draft, number, square, add_link, add_point, world, end_group, shuffle
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram

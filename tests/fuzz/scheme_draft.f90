@@ -4,8 +4,9 @@ module scheme_draft
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, constant_jet
    use dice, only: dice_t, throw, chance, between, disorder
-   use schemes, only: scheme_t, link_t, point_t, pair_t, group_t, body_t, drive_relangle, form_any, &
-      form_parallelogram, angle_unit, link_at, place, set_trigonometry, double
+   use mechanism, only: drive_relangle
+   use schemes, only: scheme_t, link_t, point_t, pair_t, group_t, body_t, form_any, form_parallelogram, &
+      angle_unit, link_at, place, set_trigonometry, double
    use dyad_forms, only: solve_dyad, choose_side
    use group_newton, only: outcome_t, solve_group
    implicit none

@@ -5,7 +5,8 @@ module scheme_motion
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use schemes, only: scheme_t, group_t, body_t, form_any, form_rrr, form_prp, form_rpp, form_parallelogram, &
-      drive_relangle, angle_unit, drive_unit, set_trigonometry, point_on, is_redundant
+      angle_unit, is_angle, drive_unit, set_trigonometry, point_on, is_redundant
+   use mechanism, only: drive_relangle
    use drive_laws, only: law_jet, variation
    use dyad_forms, only: solve_dyad, place_parallelogram
    use group_newton, only: outcome_t, solve_group, residuals
@@ -161,8 +162,8 @@ contains
       do k = 1, size(s%groups)
          do i = s%groups(k)%drives(1), s%groups(k)%drives(2)
             associate (d => s%drives(i), unit => drive_unit(s, s%drives(i)))
-               way = max(way, variation(d%law, from, to, unit, angle_unit(s))/merge(s%groups(k)%scale, 1.0_qp, &
-                  d%kind > drive_relangle))
+               way = max(way, variation(d%law, from, to, unit, angle_unit(s))/merge(1.0_qp, s%groups(k)%scale, &
+                  is_angle(d)))
             end associate
          end do
       end do

@@ -3,8 +3,9 @@
 module scheme_results
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, pi_q, operator(-), operator(+), operator(*), sin, cos, sqrt, atan2
-   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place, is_redundant, measure_t, &
-      measure_distance, measure_line, measure_angle, measure_xi, measure_sum
+   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place, is_redundant
+   use mechanism, only: measure_distance, measure_line, measure_angle, measure_xi, measure_sum
+   use csv_cells, only: cell_length, split, blame
    use scheme_motion, only: motion_t, begin_motion, move_to, closes, is_followed, is_lost
    implicit none
    private
@@ -28,7 +29,8 @@ module scheme_results
    real(qp), parameter :: small_group = 0.01_qp
    !> Points that are closer, in lengths of their mechanism, may coincide: their direction is not compared.
    real(qp), parameter :: close = 1.0e-6_qp
-   integer, parameter :: cells = 24, cell_length = 26
+   !> Of a row with errors.
+   integer, parameter :: cells = 24
 
    type :: row_t
       integer :: set = 0, step = 0, number = 0
@@ -73,7 +75,7 @@ contains
 
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       if (status == 0) read (unit, '(a)', iostat=status)
-      if (status /= 0) call blame(v, 'NO CSV FILE')
+      if (status /= 0) call blame(v%text, 'NO CSV FILE')
       set = 0
       step = -1
       do while (.not. allocated(v%text))
@@ -83,7 +85,7 @@ contains
          if (.not. allocated(v%text)) call judge_row(s(set), m, row, is_too_long, so_far, v)
       end do
       close (unit)
-      if (set /= size(s)) call blame(v, 'SETS ARE MISSING')
+      if (set /= size(s)) call blame(v%text, 'SETS ARE MISSING')
    end subroutine judge
 
    !> The motion `m` at the instant of `row`, `regular` the last one of all groups.
@@ -100,10 +102,10 @@ contains
       step = row%step
       if (row%set /= set) then
          set = row%set
-         if (set < 1 .or. set > size(s)) call blame(v, 'NUMBER OF THE SET')
+         if (set < 1 .or. set > size(s)) call blame(v%text, 'NUMBER OF THE SET')
          if (allocated(v%text)) return
          call begin_motion(s(set), row%t, m, problem)
-         if (allocated(problem)) call blame(v, 'THE TRUTH: '//problem)
+         if (allocated(problem)) call blame(v%text, 'THE TRUTH: '//problem)
          if (allocated(problem)) return
          regular = m
          so_far%found = [(.true., k=1, size(s(set)%groups))]
@@ -115,7 +117,7 @@ contains
       call move_to(s(set), row%t, m)
       if (all(m%status == regular%status)) regular = m
       v%instants = v%instants + 1
-      if (.not. closes(s(set), m)) call blame(v, 'THE TRUTH DOES NOT CLOSE AT '//where(row))
+      if (.not. closes(s(set), m)) call blame(v%text, 'THE TRUTH DOES NOT CLOSE AT '//where(row))
    end subroutine begin_instant
 
    !> A row against the motion `m`. After an instant without a position METHOD MATRIX may find another assembly, from the
@@ -138,7 +140,7 @@ contains
       if (status == is_lost) then
          v%lost = v%lost + 1
          if (row%known(1) .and. .not. (s%method == 'MATRIX' .and. .not. so_far%found(maxval(group)))) &
-            call blame(v, 'A POSITION BEYOND A LIMIT: '//where(row))
+            call blame(v%text, 'A POSITION BEYOND A LIMIT: '//where(row))
          return
       else if (status /= is_followed) then
          v%unknown = v%unknown + 1
@@ -211,7 +213,7 @@ contains
          if (row%is_told(i) .and. abs(row%value(i) - truth(c)) > row%error(i) + bits*abs(truth(c)) + nothing*unit(c)) &
             v%above = v%above + 1
          v%worst(k) = max(v%worst(k), off)
-         if (.not. off <= 1.0_qp) call blame(v, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
+         if (.not. off <= 1.0_qp) call blame(v%text, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
             told(row%value(i))//' FOR '//told(truth(c))//', ERROR TOLD '//told(row%error(i)))
       end do
    end subroutine compare
@@ -236,7 +238,7 @@ contains
          ! Digits that rounding has taken are masked; the instant is not flagged by that alone.
          if (row%mark /= 'UNKNOWN') v%flagged = v%flagged + 1
       else
-         call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
+         call blame(v%text, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
       end if
    end subroutine judge_flag
 
@@ -403,7 +405,7 @@ contains
       at_end = status /= 0
       if (at_end) return
       call split(line, cell, n)
-      if (n /= cells) call blame(v, 'CELLS OF A ROW: '//trim(line))
+      if (n /= cells) call blame(v%text, 'CELLS OF A ROW: '//trim(line))
       if (n /= cells) return
       read (cell(1), *) row%set
       read (cell(2), *) row%step
@@ -419,25 +421,6 @@ contains
       end do
       row%mark = cell(15)(:12)
    end subroutine read_row
-
-   pure subroutine split(line, cell, n)
-      character(*), intent(in) :: line
-      character(cell_length), intent(out) :: cell(cells)
-      integer, intent(out) :: n
-      integer :: i, j
-
-      cell = ''
-      n = 0
-      i = 1
-      do
-         j = index(line(i:), ',')
-         if (j == 0) j = len_trim(line(i:)) + 1
-         n = n + 1
-         if (n <= cells) cell(n) = line(i:i + j - 2)
-         i = i + j
-         if (i > len_trim(line) + 1) exit
-      end do
-   end subroutine split
 
    real(qp) function number(text)
       character(*), intent(in) :: text
@@ -466,11 +449,4 @@ contains
       write (buffer, '(es24.16e3)') x
       text = trim(adjustl(buffer))
    end function told
-
-   subroutine blame(v, text)
-      type(verdict_t), intent(inout) :: v
-      character(*), intent(in) :: text
-
-      if (.not. allocated(v%text)) v%text = text
-   end subroutine blame
 end module scheme_results

@@ -3,18 +3,17 @@
 module schemes
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, degree_q, operator(+), operator(-), operator(*), sin, cos
-   use drive_laws, only: law_t, term_harmonic, term_power, term_table, term_rise
+   use mechanism, only: drive_angle, drive_relangle, measure_distance, measure_line, measure_angle, measure_sum, &
+      term_power, term_table, term_cycloid
+   use rise_laws, only: rise_words
+   use drive_laws, only: law_t
    implicit none
    private
    public :: scheme_t, link_t, point_t, pair_t, measure_t, drive_t, group_t, body_t
-   public :: measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
-   public :: drive_angle, drive_relangle, drive_x, drive_y, drive_slide
    public :: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram
-   public :: angle_unit, point_on, link_at, place, set_trigonometry, drive_unit, write_scheme, double, is_redundant
+   public :: angle_unit, is_angle, point_on, link_at, place, set_trigonometry, drive_unit, write_scheme, double
+   public :: is_redundant
 
-   enum, bind(c)
-      enumerator :: drive_angle = 1, drive_relangle, drive_x, drive_y, drive_slide
-   end enum
    !> What a group is solved by: closed forms of dyads and of the parallelogram, or Newton's method.
    enum, bind(c)
       enumerator :: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram
@@ -40,9 +39,6 @@ module schemes
       real(qp) :: alpha = 0.0_qp, h = 0.0_qp, beta = 0.0_qp !< angles in the deck's unit
    end type pair_t
 
-   enum, bind(c)
-      enumerator :: measure_distance = 1, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
-   end enum
    character(8), parameter :: measure_cards(measure_sum) = &
       [character(8) :: 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM']
 
@@ -123,12 +119,19 @@ contains
          .and. s%pairs(:n - 1)%point_j == s%pairs(n)%point_j)
    end function is_redundant
 
+   !> The drive moves an angle, not a length.
+   pure logical function is_angle(drive)
+      type(drive_t), intent(in) :: drive
+
+      is_angle = drive%kind == drive_angle .or. drive%kind == drive_relangle
+   end function is_angle
+
    !> In radians or lengths: the unit of what `drive` gives.
    pure real(qp) function drive_unit(s, drive)
       type(scheme_t), intent(in) :: s
       type(drive_t), intent(in) :: drive
 
-      drive_unit = merge(angle_unit(s), 1.0_qp, drive%kind == drive_angle .or. drive%kind == drive_relangle)
+      drive_unit = merge(angle_unit(s), 1.0_qp, is_angle(drive))
    end function drive_unit
 
    !> The point of `pair` that lies on `link`.
@@ -214,32 +217,24 @@ contains
    subroutine write_drive(d, digits, unit)
       type(drive_t), intent(in) :: d
       integer, intent(in) :: digits, unit
-      character(8), parameter :: kinds(5) = [character(8) :: 'ANGLE', 'RELANGLE', 'X', 'Y', 'SLIDE']
+      character(8), parameter :: drives(5) = [character(8) :: 'ANGLE', 'X', 'Y', 'RELANGLE', 'SLIDE']
+      character(1), parameter :: letters(5) = ['L', 'P', 'P', 'L', 'K'] !< of the names of their subjects
+      character(8), parameter :: terms(7) = [character(8) :: 'HARMONIC', 'POWER', 'TABLE', rise_words]
+      character(8) :: second
       integer :: k
 
-      select case (d%kind)
-      case (drive_angle)
-         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject)], d%law%polynomial)
-      case (drive_relangle)
-         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject), name('L', d%second)], &
-            d%law%polynomial)
-      case (drive_slide)
-         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('K', d%subject)], d%law%polynomial)
-      case default
-         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('P', d%subject)], d%law%polynomial)
-      end select
-      select case (d%law%form)
-      case (term_harmonic)
-         call card(digits, unit, 'ADD     ', ['HARMONIC'], d%law%r)
-      case (term_power)
-         call card(digits, unit, 'ADD     ', ['POWER   '], d%law%r(:2))
-      case (term_table)
+      second = ''
+      if (d%kind == drive_relangle) second = name('L', d%second)
+      call card(digits, unit, 'DRIVE', [drives(d%kind), name(letters(d%kind), d%subject), second], d%law%polynomial)
+      if (d%law%form == 0) return
+      if (d%law%form == term_table) then
          do k = 1, size(d%law%time)
-            call card(digits, unit, 'ADD     ', ['TABLE   '], [d%law%time(k), d%law%value(k)])
+            call card(digits, unit, 'ADD', [terms(term_table)], [d%law%time(k), d%law%value(k)])
          end do
-      case (term_rise)
-         call card(digits, unit, 'RISE    ', [d%law%word], d%law%r)
-      end select
+      else
+         call card(digits, unit, merge('RISE', 'ADD ', d%law%form >= term_cycloid), [terms(d%law%form)], &
+            d%law%r(:merge(2, 3, d%law%form == term_power)))
+      end if
    end subroutine write_drive
 
    !> The card of measure number `k`, with lines that are named M and a number as all measures are.
@@ -248,6 +243,7 @@ contains
       type(measure_t), intent(in) :: one
       integer, intent(in) :: k, unit
       character(1) :: letters(2)
+      real(qp), allocatable :: reals(:)
 
       select case (one%kind)
       case (measure_distance, measure_line)
@@ -259,13 +255,10 @@ contains
       case default
          letters = ['P', 'L']
       end select
-      if (one%kind == measure_sum) then
-         call card(s%digits, unit, measure_cards(one%kind), &
-            [name(letters(1), one%subjects(1)), name(letters(2), one%subjects(2)), name('M', k)], [one%factors, one%constant])
-      else
-         call card(s%digits, unit, measure_cards(one%kind), &
-            [name(letters(1), one%subjects(1)), name(letters(2), one%subjects(2)), name('M', k)], [real(qp) ::])
-      end if
+      reals = [real(qp) ::]
+      if (one%kind == measure_sum) reals = [one%factors, one%constant]
+      call card(s%digits, unit, measure_cards(one%kind), &
+         [name(letters(1), one%subjects(1)), name(letters(2), one%subjects(2)), name('M', k)], reals)
    end subroutine write_measure
 
    !> BRANCH, TIME, AT, PRINT and END.

@@ -2,16 +2,16 @@
 module csv_cells
    implicit none
    private
-   public :: cells, cell_length, split, whole_text
+   public :: cells, cell_length, split, whole_text, blame
 
    integer, parameter :: cells = 15, cell_length = 48
 
 contains
 
-   !> The cells of a line, a name in quotes without them; `n`: how many, `cells + 1` where there are more.
+   !> The cells of a line, a name in quotes without them; `n`: how many, one more than fit where there are more.
    pure subroutine split(line, cell, n)
       character(*), intent(in) :: line
-      character(cell_length), intent(out) :: cell(cells)
+      character(*), intent(out) :: cell(:)
       integer, intent(out) :: n
       integer :: i, length
       logical :: quoted
@@ -29,13 +29,21 @@ contains
          else if (line(i:i) == ',' .and. .not. quoted) then
             n = n + 1
             length = 0
-            if (n > cells) return
+            if (n > size(cell)) return
             cycle
          end if
-         length = min(length + 1, cell_length)
+         length = min(length + 1, len(cell))
          cell(n)(length:length) = line(i:i)
       end do
    end subroutine split
+
+   !> The first thing that is wrong is kept.
+   subroutine blame(wrong, text)
+      character(:), allocatable, intent(inout) :: wrong
+      character(*), intent(in) :: text
+
+      if (.not. allocated(wrong)) wrong = text
+   end subroutine blame
 
    !> `i` as text.
    pure function whole_text(i) result(text)

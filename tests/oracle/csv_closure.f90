@@ -4,8 +4,8 @@ module csv_closure
    use kinds, only: wp
    use quad_jet, only: qp, pi_q, jet_t, operator(-)
    use mechanism, only: mechanism_t, instant_count, request_point, request_pair, pair_prismatic
-   use csv_rows, only: rows_t, read_instant, blame, csv_head
-   use csv_cells, only: whole_text
+   use csv_rows, only: rows_t, read_instant, csv_head
+   use csv_cells, only: whole_text, blame
    use jet_closure, only: body_jet_t, numbers_of, closure_jets, place_jet, slide_jet
    use jet_drives, only: drive_jets
    use jet_condition, only: condition, sizes_t, sizes_of, row_sizes

@@ -2,7 +2,7 @@
 !> asks for.
 module csv_rows
    use kinds, only: wp
-   use csv_cells, only: cells, cell_length, split, whole_text
+   use csv_cells, only: cells, cell_length, split, whole_text, blame
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
    use columns, only: kinds_of_rows
    use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, &
@@ -11,7 +11,7 @@ module csv_rows
    use jet_closure, only: body_jet_t
    implicit none
    private
-   public :: rows_t, read_instant, blame, csv_head
+   public :: rows_t, read_instant, csv_head
 
    character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
 
@@ -27,14 +27,6 @@ module csv_rows
    end type rows_t
 
 contains
-
-   !> The first thing that is wrong is kept.
-   subroutine blame(wrong, text)
-      character(:), allocatable, intent(inout) :: wrong
-      character(*), intent(in) :: text
-
-      if (.not. allocated(wrong)) wrong = text
-   end subroutine blame
 
    !> The rows of instant `k`, which must be those that the deck asks for.
    subroutine read_instant(unit, m, k, rows, wrong)

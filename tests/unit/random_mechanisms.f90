@@ -5,10 +5,10 @@ module random_mechanisms
    use kinds, only: wp
    use quad_jet, only: qp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, drive_x, drive_y
    use deck, only: read_deck
    use dice, only: new_dice, throw, chance
-   use schemes, only: write_scheme, form_any, drive_x, drive_y
+   use schemes, only: write_scheme, form_any
    use scheme_draft, only: draft_t, new_draft, number, anywhere, add_links, join, pick_base, begin_group, shuffle
    use draft_drives, only: add_drive, add_point_drive
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
