@@ -6,6 +6,7 @@ module drawn_decks
    use dice, only: dice_t, throw, chance, between, magnitude
    use plane_vectors, only: pi
    use deck_text, only: deck_text_t, line_length, label, set_label, insert_line, find_cards
+   use printed_cards, only: row
    implicit none
    private
    public :: drawn_deck
@@ -364,10 +365,7 @@ contains
       real(wp), intent(in), optional :: x1, x2
       character(80) :: card
 
-      card = name
-      if (present(a)) card(9:16) = a
-      if (present(b)) card(17:24) = b
-      if (present(c)) card(25:32) = c
+      card = row(name, a, b, c)
       if (present(x1)) write (card(33:48), '(f16.4)') x1
       if (present(x2)) write (card(49:64), '(f16.4)') x2
       call insert_line(w%deck_text_t, size(w%line) + 1, card)

@@ -160,22 +160,16 @@ contains
             angles(1) = atan2(b(2), b(1))
             b = a + b - [real(l(4), qp), 0.0_qp]
             angles(2) = atan2(b(2), b(1))
-         case (scene_inverted)
-            ! From the lever's pivot the pin has the distance of the slot from it: d . n = -h.
-            d = a - [real(l(2), qp), 0.0_qp]
-            square = sum(d**2)
-            margin = square - real(l(3), qp)**2
-            if (margin <= 0.0_qp) return
-            angles(1) = atan2(d(2), d(1)) + asin(l(3)/sqrt(square))
-            if (s < 0) angles(1) = atan2(d(2), d(1)) + acos(-1.0_qp) - asin(l(3)/sqrt(square))
-         case (scene_arm)
+         case (scene_inverted, scene_arm)
+            ! From the pivot the pin, or the end, has the distance of the guide from it: d . n = -h.
             d = [crank, real(l(2), qp)]
+            if (f%scene == scene_inverted) d = a - [real(l(2), qp), 0.0_qp]
             square = sum(d**2)
             margin = square - real(l(3), qp)**2
             if (margin <= 0.0_qp) return
             angles(1) = atan2(d(2), d(1)) + asin(l(3)/sqrt(square))
             if (s < 0) angles(1) = atan2(d(2), d(1)) + acos(-1.0_qp) - asin(l(3)/sqrt(square))
-            angles(2) = s*sqrt(margin)/f%unit
+            if (f%scene == scene_arm) angles(2) = s*sqrt(margin)/f%unit
          case (scene_cylinder)
             square = crank**2 + real(l(3), qp)**2
             x = (square + real(l(2), qp)**2 - real(l(1), qp)**2)/(2.0_qp*l(2))

@@ -12,23 +12,14 @@ program circuits_by_chance
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
    use dice, only: dice_t, new_dice, between, chance, throw
-   use arguments, only: number
-   use csv_cells, only: whole_text
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use deck_tally, only: count_seeds
    implicit none
 
    !> A limit is known to so much in rad; circuits as wide as the distance of two values of the drive are found.
    real(wp), parameter :: known = 1.0e-8_wp, found_always = 5.0_wp*pi/180.0_wp, &
       too_narrow = 0.25_wp*pi/180.0_wp
    real(wp), parameter :: turn = 2.0_wp*pi
-   type(certificate_counts_t) :: tally
-   integer :: first, i
-
-   first = number(2, 1)
-   do i = first, first + number(1, 300) - 1
-      call count_one(tally, agrees(i), 'seed '//whole_text(i))
-   end do
-   call conclude(tally)
+   call count_seeds(agrees, 300)
 
 contains
 

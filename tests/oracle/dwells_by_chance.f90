@@ -11,9 +11,7 @@ program dwells_by_chance
    use analysis, only: analysis_t, make_analysis, advance
    use sample_mechanisms, only: four_bar, crank_slider
    use dice, only: dice_t, new_dice, between, chance, throw
-   use arguments, only: number
-   use csv_cells, only: whole_text
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use deck_tally, only: count_seeds
    implicit none
 
    !> Roundings of angles and lengths up to 10, over the sine of the angle between the two links of the dyad; on the
@@ -37,14 +35,7 @@ program dwells_by_chance
       type(mechanism_t) :: m
    end type scene_t
 
-   type(certificate_counts_t) :: tally
-   integer :: first, i
-
-   first = number(2, 1)
-   do i = first, first + number(1, 500) - 1
-      call count_one(tally, agrees(i), 'seed '//whole_text(i))
-   end do
-   call conclude(tally)
+   call count_seeds(agrees, 500)
 
 contains
 

@@ -249,7 +249,7 @@ contains
    !> Prints the set of a scene.
    subroutine print_deck(s)
       type(scene_t), intent(in) :: s
-      integer :: k, n, list(joints)
+      integer :: k, n
       character(16) :: pair(2)
 
       call card('UNITS', 'MM', merge('DEG', 'RAD', s%degrees), 'S')
@@ -258,9 +258,7 @@ contains
          if (s%has_bar(k)) call card('LINK', link_names(k), joint_names(bars(1, k)), joint_names(bars(2, k)))
          if (.not. s%has_bar(k)) call card('LINK', link_names(k))
       end do
-      list = [(k, k=1, joints)]
-      do n = 1, joints
-         k = list(n)
+      do k = 1, joints
          call card('JOINT', joint_names(k), name_of(link_of(k, 1)), name_of(link_of(k, 2)), s%place(:, k))
       end do
       if (s%has_bar(2)) call card('POINT', 'T', 'COUPLER', '', [s%xi, s%eta])

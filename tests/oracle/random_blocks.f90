@@ -6,7 +6,7 @@
 !> The equations are those of the pairs of the deck, in the places X = x + i y of the links and their directions w =
 !> exp(i phi), and the conjugates of both: no tree, no loops, no slides. What is linear in (X, w) alone is eliminated.
 program random_blocks
-   use kinds, only: wp, label_length
+   use kinds, only: wp
    use plane_vectors, only: pi, rotated, direction
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, pair_revolute, pair_prismatic
    use structure, only: structure_report_t, find_structure
@@ -14,6 +14,7 @@ program random_blocks
    use number_format, only: whole
    use dice, only: dice_t, new_dice, throw, chance, between
    use arguments, only: argument, number
+   use printed_cards, only: card
    implicit none
 
    !> Of lengths in the system: so large that places are eliminated, and directions stay.
@@ -94,9 +95,16 @@ contains
       real(wp), intent(in) :: x
       character(16) :: text
 
-      write (text, '(f16.6)') x
+      text = field(x)
       read (text, *) decimals
    end function decimals
+
+   !> `x` in the columns of a card.
+   elemental character(16) function field(x)
+      real(wp), intent(in) :: x
+
+      write (field, '(f16.6)') x
+   end function field
 
    !> All links of `m` are in one block, and nothing is too much.
    logical function is_one_block(m) result(is_one)
@@ -134,50 +142,21 @@ contains
       integer :: k
 
       do k = 1, size(m%links)
-         call print_card(merge('GROUND', 'LINK  ', m%links(k)%ground), labels(m%links(k)%name), m%links(k)%position)
+         call card(merge('GROUND', 'LINK  ', m%links(k)%ground), m%links(k)%name, reals=field(m%links(k)%position))
       end do
       do k = 1, size(m%points)
-         call print_card('POINT', labels(m%points(k)%name, m%links(m%points(k)%link)%name), &
-            m%points(k)%offset)
+         call card('POINT', m%points(k)%name, m%links(m%points(k)%link)%name, reals=field(m%points(k)%offset))
       end do
       do k = 1, size(m%pairs)
-         associate (p => m%pairs(k), names => [m%points(m%pairs(k)%point_i)%name, m%points(m%pairs(k)%point_j)%name, &
-            m%pairs(k)%name])
-            if (p%kind == pair_revolute) call print_card('REVOLUTE', names, [real(wp) ::])
-            if (p%kind == pair_prismatic) call print_card('PRISM', names, [p%alpha, p%offset, p%beta])
+         associate (p => m%pairs(k), i => m%points(m%pairs(k)%point_i), j => m%points(m%pairs(k)%point_j))
+            if (p%kind == pair_revolute) call card('REVOLUTE', i%name, j%name, p%name)
+            if (p%kind == pair_prismatic) call card('PRISM', i%name, j%name, p%name, field([p%alpha, p%offset, p%beta]))
          end associate
       end do
-      call print_card('AT', labels(), [0.0_wp])
-      call print_card('ASSEMBLY', labels(), [real(wp) ::])
-      call print_card('END', labels(), [real(wp) ::])
+      call card('AT', reals=field([0.0_wp]))
+      call card('ASSEMBLY')
+      call card('END')
    end subroutine print_deck
-
-   !> The labels of a card.
-   pure function labels(a, b) result(list)
-      character(*), intent(in), optional :: a, b
-      character(label_length) :: list(3)
-
-      list = ''
-      if (present(a)) list(1) = a
-      if (present(b)) list(2) = b
-   end function labels
-
-   !> A card on standard output.
-   subroutine print_card(name, label, reals)
-      character(*), intent(in) :: name, label(3)
-      real(wp), intent(in) :: reals(:)
-      character(80) :: line
-      integer :: k
-
-      line = name
-      do k = 1, 3
-         line(8*k + 1:8*k + 8) = label(k)
-      end do
-      do k = 1, size(reals)
-         write (line(16*k + 17:16*k + 32), '(f16.6)') reals(k)
-      end do
-      write (*, '(a)') trim(line)
-   end subroutine print_card
 
    !> The polynomials of `m` on standard output. Group: 1, then X and w of each moving link.
    subroutine print_system(m)

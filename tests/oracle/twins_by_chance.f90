@@ -8,21 +8,12 @@ program twins_by_chance
    use circuits, only: circuits_t, find_circuits
    use twin_circuits, only: twin_t, throw_twin
    use dice, only: dice_t, new_dice
-   use arguments, only: number
-   use csv_cells, only: whole_text
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use deck_tally, only: count_seeds
    implicit none
 
    !> A limit is known to so much in rad and lengths.
    real(wp), parameter :: known = 1.0e-8_wp
-   type(certificate_counts_t) :: tally
-   integer :: first, i
-
-   first = number(2, 1)
-   do i = first, first + number(1, 500) - 1
-      call count_one(tally, agrees(i), 'seed '//whole_text(i))
-   end do
-   call conclude(tally)
+   call count_seeds(agrees, 500)
 
 contains
 

@@ -1,11 +1,14 @@
-!> Tests. What the programs that run over decks have in common: the name of a deck and its sets, and a count of what was right.
+!> Tests. What the programs that run over decks or seeds have in common: the name of a deck and its sets, and a count of
+!> what was right.
 module deck_tally
    use failures, only: failure_t
    use mechanism, only: mechanism_t
    use deck, only: read_deck
+   use arguments, only: number
+   use csv_cells, only: whole_text
    implicit none
    private
-   public :: certificate_counts_t, count_one, conclude, deck_name, sets_of
+   public :: certificate_counts_t, count_one, conclude, count_seeds, deck_name, sets_of
 
    type :: certificate_counts_t
       integer :: passed = 0, failed = 0
@@ -33,6 +36,25 @@ contains
       print '(i0,a,i0,a)', tally%passed, ' passed, ', tally%failed, ' failed'
       if (tally%failed > 0) stop 1, quiet=.true.
    end subroutine conclude
+
+   !> Counts the seeds that agree, and ends the program. The words of the command are their number (`otherwise` if there
+   !> is none) and the first of them.
+   subroutine count_seeds(agrees, otherwise)
+      interface
+         logical function agrees(seed)
+            integer, intent(in) :: seed
+         end function agrees
+      end interface
+      integer, intent(in) :: otherwise
+      type(certificate_counts_t) :: tally
+      integer :: seed, first
+
+      first = number(2, 1)
+      do seed = first, first + number(1, otherwise) - 1
+         call count_one(tally, agrees(seed), 'seed '//whole_text(seed))
+      end do
+      call conclude(tally)
+   end subroutine count_seeds
 
    !> The file's name without its folders and what follows a dot.
    pure function deck_name(path) result(name)

@@ -4,6 +4,7 @@ module deck_samples
    use number_format, only: whole
    use failures, only: failure_t
    use deck, only: read_deck
+   use printed_cards, only: row
    implicit none
    private
    public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, remarks_of, set_of, four_bar
@@ -12,21 +13,6 @@ module deck_samples
    character(*), parameter :: deck_file = 'unit_test_deck.tmp'
 
 contains
-
-   !> A card by its fields: name, labels A to C, reals 1 to 3 as texts.
-   pure function row(name, a, b, c, r1, r2, r3) result(line)
-      character(*), intent(in) :: name
-      character(*), intent(in), optional :: a, b, c, r1, r2, r3
-      character(80) :: line
-
-      line = name
-      if (present(a)) line(9:16) = a
-      if (present(b)) line(17:24) = b
-      if (present(c)) line(25:32) = c
-      if (present(r1)) line(33:48) = r1
-      if (present(r2)) line(49:64) = r2
-      if (present(r3)) line(65:80) = r3
-   end function row
 
    !> A crank that turns about a fixed point: the shortest deck without an error, eight cards.
    pure function sample() result(lines)

@@ -151,42 +151,31 @@ contains
       integer, intent(in) :: link
       real(wp), intent(in) :: value, rate, acceleration
 
-      drive%kind = drive_angle
-      drive%subject = link
-      drive%polynomial = [value, rate, acceleration]
+      drive = drive_t(drive_angle, link, 0, [value, rate, acceleration])
    end function angle_drive
 
    type(link_t) function base()
-      base%name = 'BASE'
-      base%ground = .true.
+      base = link_t('BASE', .true.)
    end function base
 
    type(link_t) function moving(name, x, y, phi)
       character(*), intent(in) :: name
       real(wp), intent(in) :: x, y, phi
 
-      moving%name = name
-      moving%position = [x, y, phi]
+      moving = link_t(name, position=[x, y, phi])
    end function moving
 
    type(pair_t) function revolute(i, j)
       integer, intent(in) :: i, j
 
-      revolute%kind = pair_revolute
-      revolute%point_i = i
-      revolute%point_j = j
+      revolute = pair_t(pair_revolute, '', i, j)
    end function revolute
 
    type(pair_t) function prismatic(i, j, alpha, offset, beta)
       integer, intent(in) :: i, j
       real(wp), intent(in) :: alpha, offset, beta
 
-      prismatic%kind = pair_prismatic
-      prismatic%point_i = i
-      prismatic%point_j = j
-      prismatic%alpha = alpha
-      prismatic%offset = offset
-      prismatic%beta = beta
+      prismatic = pair_t(pair_prismatic, '', i, j, alpha, offset, beta)
    end function prismatic
 
    !> What the deck reader would add: the tables of all links, and no instants.
