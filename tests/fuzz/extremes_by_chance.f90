@@ -11,6 +11,7 @@ program extremes_by_chance
    use drive_laws, only: law_t, law_jet
    use dice, only: dice_t, new_dice, between, chance, throw
    use arguments, only: argument, number
+   use printed_numbers, only: printed_number_t => printed_t, read_printed
    implicit none
 
    integer, parameter :: least = 1, greatest = 2
@@ -396,7 +397,8 @@ contains
       logical, intent(out) :: is_right
       integer, intent(inout) :: numbers, masked(2), wrong(2)
       type(place_t), allocatable :: places(:)
-      real(qp) :: largest, varies_by, x, digit, rate
+      type(printed_number_t) :: value, time
+      real(qp) :: largest, varies_by, rate
       logical :: is_wrong(2)
       integer :: k, which
 
@@ -410,11 +412,11 @@ contains
                is_wrong(1) = varies_by > blank_part*max(largest, rate)
             else
                numbers = numbers + 1
-               masked = masked + [count_marks(p%value(which, k)), count_marks(p%time(which, k))]
-               call read_number(p%value(which, k), p%power(k), x, digit)
-               is_wrong(1) = abs(x - places(1)%value) > allowed_part(p%value(which, k))*digit
-               call read_number(p%time(which, k), p%time_power, x, digit)
-               is_wrong(2) = minval(max(places%from - x, x - places%to)) > allowed_part(p%time(which, k))*digit
+               value = read_printed(trim(p%value(which, k)))
+               time = read_printed(trim(p%time(which, k)))
+               masked = masked + [value%masked, time%masked]
+               is_wrong(1) = .not. is_within(value, p%power(k), places(1)%value, places(1)%value)
+               is_wrong(2) = .not. any(is_within(time, p%time_power, places%from, places%to))
             end if
             if (p%may_miss) is_wrong = .false.
             wrong = wrong + merge(1, 0, is_wrong)
@@ -426,53 +428,15 @@ contains
       end do
    end subroutine judge_set
 
-   !> By how much the printed number `text` may differ from the true one, in its last known digit.
-   pure real(qp) function allowed_part(text)
-      character(*), intent(in) :: text
-
-      allowed_part = merge(half_digit, one_digit, count_marks(text) == 0)
-   end function allowed_part
-
-   pure integer function count_marks(text) result(n)
-      character(*), intent(in) :: text
-      integer :: i
-
-      n = count([(text(i:i) == '?', i=1, len(text))])
-   end function count_marks
-
-   !> The printed number `text` times 10**`power`, without what is masked, and what its last known `digit` is worth;
-   !> without limit if no digit is known.
-   subroutine read_number(text, power, x, digit)
-      character(*), intent(in) :: text
+   !> The printed number times 10**`power` lies between `from` and `to`, as far as its digits are known.
+   elemental logical function is_within(printed, power, from, to)
+      type(printed_number_t), intent(in) :: printed
       integer, intent(in) :: power
-      real(qp), intent(out) :: x, digit
-      character(:), allocatable :: mantissa, plain
-      integer :: i, exponent, first_mark, dot
+      real(qp), intent(in) :: from, to
+      real(qp) :: x, allowed
 
-      exponent = power
-      mantissa = trim(text)
-      i = index(mantissa, 'E')
-      if (i > 0) then
-         read (mantissa(i + 1:), *) exponent
-         exponent = exponent + power
-         mantissa = mantissa(:i - 1)
-      end if
-      first_mark = index(mantissa, '?')
-      if (first_mark == 0) first_mark = len(mantissa) + 1
-      dot = index(mantissa, '.')
-      if (dot == 0) dot = len(mantissa) + 1
-      plain = mantissa
-      do i = first_mark, len(plain)
-         if (plain(i:i) == '?') plain(i:i) = '0'
-      end do
-      x = 0.0_qp
-      digit = huge(digit)
-      if (verify(mantissa, '-?. ') == 0) return
-      read (plain, *) x
-      x = x*10.0_qp**exponent
-      ! The last known digit is before the first mark, or before the point in front of that.
-      i = first_mark - 1
-      if (i == dot) i = i - 1
-      digit = 10.0_qp**(exponent + merge(dot - 1 - i, dot - i, i < dot))
-   end subroutine read_number
+      x = printed%value*10.0_qp**power
+      allowed = merge(one_digit, half_digit, printed%masked > 0)*printed%unit*10.0_qp**power
+      is_within = printed%valid .and. (printed%open .or. max(from - x, x - to) <= allowed)
+   end function is_within
 end program extremes_by_chance
