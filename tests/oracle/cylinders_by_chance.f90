@@ -127,7 +127,7 @@ contains
             length = length_of(c, 0.0_qp)
             if (chance(d, 0.5_wp)) c%stroke(1) = text_of(real(length, wp)*between(d, 0.5_wp, 0.99_wp))
             if (chance(d, 0.5_wp)) c%stroke(2) = text_of(real(length, wp)*between(d, 1.01_wp, 1.6_wp))
-            if (chance(d, 0.05_wp)) c%stroke = [text_of(1.1_wp*real(length, wp)), text_of(1.3_wp*real(length, wp))]
+            if (chance(d, 0.05_wp)) c%stroke = text_of([1.1_wp, 1.3_wp]*real(length, wp))
             if (c%stroke(1) /= '') read (c%stroke(1), *) c%least
             if (c%stroke(2) /= '') read (c%stroke(2), *) c%greatest
          end associate
@@ -167,8 +167,8 @@ contains
             foot = polar(between(d, 0.5_wp, 2.5_wp), between(d, -3.1_wp, 3.1_wp))
             eye = polar(between(d, 0.5_wp, 2.5_wp), between(d, -3.1_wp, 3.1_wp))
          end if
-         c%foot = [text_of(foot(1) + real(pivot(1), wp)), text_of(foot(2) + real(pivot(2), wp))]
-         c%eye = [text_of(eye(1) + real(pivot(1), wp)), text_of(eye(2) + real(pivot(2), wp))]
+         c%foot = text_of(foot + real(pivot, wp))
+         c%eye = text_of(eye + real(pivot, wp))
          read (c%foot, *) f
          read (c%eye, *) e
          f = f - pivot
@@ -349,7 +349,7 @@ contains
       if (present(down_at)) down_at = minloc(modulo(-list%rho, turn), dim=1)
    end subroutine neighbours
 
-   function text_of(x) result(text)
+   elemental function text_of(x) result(text)
       real(wp), intent(in) :: x
       character(16) :: text
 
@@ -492,18 +492,16 @@ contains
             marks = ''
             if (set == 0) exit
          end if
-         read (line, *) found, step
-         if (index(line, ',PAIR') == 0) cycle
-         read (line(index(line, ',CYL') + 4:), '(i1)') cylinder
+         if (cell(4)(:4) /= 'PAIR') cycle
+         read (cell(2), *) step
+         read (cell(5), '(3x, i1)') cylinder
          value = -1.0_qp
-         if (index(line, ',CYL'//line(index(line, ',CYL') + 4:index(line, ',CYL') + 4)//',,') == 0) then
-            read (line(index(line, ',CYL') + 6:), *) value
-         end if
+         if (cell(6) /= '') read (cell(6), *) value
          if (cell(4) == 'PAIR') then
             at_instants(step, cylinder) = value
             marks(step) = cell(15)(:16)
          else
-            read (line(index(line, 'ASSEMBLY') + 8:index(line, ',CYL') - 1), *) n
+            read (cell(4)(index(cell(4), 'ASSEMBLY') + 8:), *) n
             at_assemblies(n, cylinder) = value
          end if
       end do
