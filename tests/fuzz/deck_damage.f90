@@ -15,11 +15,10 @@ module deck_damage
    character(16), parameter :: extremes(*) = [character(16) :: '0.0', '-0.0', '1.0E308', '-1.0E308', &
       '1.797693134E308', '4.94066E-324', '1.0E-310', '2.22507385E-308', '1.0E-300', '-1.0E-160', '1.0E-20', '1.0E-9', &
       '1.0E8', '1.0E9', '1.0E16', '-1.0E20', '1.0E60', '1.1E60', '1.0E-60', '-1.0E-59', '1.0E35', '1.0', '90.0', &
-      '180.0', &
-      '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
-      '1.5-3']
-   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'SLOT', 'LENGTH', 'JOINT', &
-      'CYLINDER', 'DRIVE', 'ADD', 'RISE', 'TIME', 'AT', 'METHOD', 'TOLER', 'VARY']
+      '180.0', '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', &
+      '-', '1.5-3']
+   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'SLOT', 'LENGTH', &
+      'JOINT', 'CYLINDER', 'DRIVE', 'ADD', 'RISE', 'TIME', 'AT', 'METHOD', 'TOLER', 'VARY']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', &
       'SLOT', 'LENGTH', 'JOINT', 'CYLINDER', 'DRIVE', 'TIME', 'TOLER', 'VARY']
    !> Radians, or lengths: so far drives go in all; where extremes are searched, which takes longer.

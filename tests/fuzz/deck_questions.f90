@@ -9,8 +9,8 @@ module deck_questions
    private
    public :: ask, lengthen_names, write_in_polish
 
-   character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'SLOT', 'JOINT', 'LENGTH', &
-      'DRIVE', 'CYLINDER', 'TIME']
+   character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'SLOT', 'JOINT', &
+      'LENGTH', 'DRIVE', 'CYLINDER', 'TIME']
    !> Circuits are asked of so many links at most.
    integer, parameter :: most_links = 5
 
@@ -185,7 +185,8 @@ contains
          is_name = k == 1
       case ('POINT', 'POLE', 'CURVE')
          is_name = k <= 2
-      case ('LINK', 'REVOLUTE', 'PRISM', 'SLOT', 'CYLINDER', 'LENGTH', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
+      case ('LINK', 'REVOLUTE', 'PRISM', 'SLOT', 'CYLINDER', 'LENGTH', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', &
+         'ETA', 'SUM')
          is_name = .true.
       case ('DRIVE')
          is_name = k >= 2 .and. label(line, k) /= 'RPM'

@@ -1,6 +1,6 @@
 !> Tests. Decks drawn by chance, with JOINT cards: a crank, a boom on its cylinder, or a parallelogram of three bars in
-!> rounded coordinates, and groups of links on it. Bars have lengths and axes along them, cylinders have strokes, pins run
-!> in slots, holes and lengths have tolerances, and runs may count turns.
+!> rounded coordinates, and groups of links on it. Bars have lengths and axes along them, cylinders have strokes, pins
+!> run in slots, holes and lengths have tolerances, and runs may count turns.
 module drawn_decks
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between, magnitude

@@ -38,7 +38,7 @@ contains
    end function law_jet
 
    !> About the way that the value makes between `a` and `b`, never much too small: what may be missed is a part of the
-   !> motion, so that a truth takes steps of a part of it.
+   !> motion, so that a reference motion takes steps of a part of it.
    real(qp) function variation(law, a, b, angle_unit, phase_unit)
       type(law_t), intent(in) :: law
       real(qp), intent(in) :: a, b, angle_unit, phase_unit

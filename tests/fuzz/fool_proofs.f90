@@ -1,8 +1,8 @@
-!> Tests. `fool_proofs [ATTEMPTS [SEED]]`: tries to have something false proved. Mechanisms with one or two assemblies, many of them
-!> near to change points or dead points by 1E-3 to 1E-14, are put into positions that are right, nearly right or wrong;
-!> steps lead to the same or the other assembly, through places where there is none, and with drives that go there and back
-!> between both ends. What is proved is held against closed forms in real128. The last line is `N passed, N failed`: an
-!> attempt is passed where nothing false is proved.
+!> Tests. `fool_proofs [ATTEMPTS [SEED]]`: tries to have something false proved. Mechanisms with one or two assemblies,
+!> many of them near to change points or dead points by 1E-3 to 1E-14, are put into positions that are right, nearly
+!> right or wrong; steps lead to the same or the other assembly, through places where there is none, and with drives
+!> that go there and back between both ends. What is proved is held against closed forms in real128. The last line is
+!> `N passed, N failed`: an attempt is passed where nothing false is proved.
 program fool_proofs
    use kinds, only: wp
    use quad_jet, only: qp
@@ -17,8 +17,8 @@ program fool_proofs
    use motion_proof, only: step_proof_t, prove_step
    use block_solver, only: solve_block
    use convergence, only: solve_report_t
-   use fool_scenes, only: fool_t, new_mechanism, find_unknowns, place_at, scene_four_bar, scene_inverted, scene_slider, &
-      scene_arm, scene_cylinder, scene_guides
+   use fool_scenes, only: fool_t, new_mechanism, find_unknowns, place_at, scene_four_bar, scene_inverted, &
+      scene_slider, scene_arm, scene_cylinder, scene_guides
    implicit none
 
    !> Between the ends of a step so many places are looked at.

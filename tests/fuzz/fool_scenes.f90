@@ -1,12 +1,12 @@
-!> Tests. Mechanisms with one block each, whose motion has a closed form in real128: a four-bar, an inverted slider and an
-!> offset crank-slider; an arm that turns and slides, driven by the place of its end; a cylinder that drives a lever; and
-!> two guides on a crank, at an angle to each other. All but the last have two assemblies, whose sign is that of the
+!> Tests. Mechanisms with one block each, whose motion has a closed form in real128: a four-bar, an inverted slider and
+!> an offset crank-slider; an arm that turns and slides, driven by the place of its end; a cylinder that drives a lever;
+!> and two guides on a crank, at an angle to each other. All but the last have two assemblies, whose sign is that of the
 !> determinant. Unknowns are angles and, of the arm and the guides, slides.
 module fool_scenes
    use kinds, only: wp
    use quad_jet, only: qp
-   use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_revolute, pair_prismatic, &
-      drive_angle, drive_x, drive_y, drive_slide, term_harmonic, request_link
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_revolute, &
+      pair_prismatic, drive_angle, drive_x, drive_y, drive_slide, term_harmonic, request_link
    use spanning_tree, only: spanning_tree_t, new_tree
    use continuation, only: continuation_t
    implicit none

@@ -14,8 +14,8 @@ program fuzz
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count
-   use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, &
-      out_table
+   use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_svg, out_animation, &
+      out_circuits, out_table
    use deck, only: read_deck
    use job, only: run_job
    use study, only: run_study

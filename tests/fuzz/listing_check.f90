@@ -9,9 +9,9 @@ module listing_check
    !> A line of a sentence that goes on in the next one is shorter by less.
    integer, parameter :: longest_word = 20
    character(14), parameter :: heads(*) = [character(14) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
-      'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'VELOCITY', 'ACCELERATION', 'PREDKOSC', 'PRZYSPIESZENIE', &
-      'XI-I', 'KSI-I', 'LENGTH', 'DLUGOSC', &
-      'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
+      'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'VELOCITY', 'ACCELERATION', 'PREDKOSC', &
+      'PRZYSPIESZENIE', 'XI-I', 'KSI-I', 'LENGTH', 'DLUGOSC', 'ETA-I', 'XI-J', 'KSI-J', &
+      'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
       'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA', 'VALUE', 'WARTOSC', 'DERIVATIVE', 'POCHODNA']
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
@@ -35,7 +35,8 @@ module listing_check
       ': LENGTH ', ': DLUGOSC ', ': ONLY LENGTHS BELOW 0', ': TYLKO DLUGOSCI PONIZEJ 0', &
       'IN THE STEP TO T =', 'W KROKU DO CHWILI T =', 'WHOLE TURNS ARE UNCERTAIN', 'LICZBA OBROTOW NIEPEWNA', &
       'AT THE LIMIT', 'NA KRESIE RUCHU', &
-      'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
+      'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', &
+      'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
       'A DRIVE IS TOO MANY, REMOVE ONE OF: ', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z: ', &
       'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM', &
       'RUCH NIEOKRESLONY, NAPEDZAJ JEDNO Z NICH', &
@@ -48,7 +49,8 @@ module listing_check
       '?: DIGITS LOST TO ROUNDING', '?: CYFRY UTRACONE PRZEZ ZAOKRAGLENIE', &
       'NO NUMBER IS KNOWN BETTER THAN THE CLOSURE ERROR', 'ZADNA LICZBA NIE JEST ZNANA LEPIEJ NIZ BLAD ZAMKNIECIA', &
       'LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS', 'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH', &
-      'REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', 'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE', &
+      'REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', &
+      'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE', &
       'INSTANT FLAGGED, SEE ABOVE', 'CHWILA ZAZNACZONA, PATRZ WYZEJ', &
       'RATIOS HAVE NO TOLERANCES', 'PRZELOZENIA NIE MAJA TOLERANCJI', &
       'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY', &
@@ -291,7 +293,8 @@ contains
       do while (status == 0)
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
-         if (merge(0, index(line, 'NaN'), has_missing) + index(line, 'Infinity') + index(line, '***') > 0 .and. wrong == '') &
+         if (wrong /= '') exit
+         if (merge(0, index(line, 'NaN'), has_missing) + index(line, 'Infinity') + index(line, '***') > 0) &
             wrong = 'PROTOCOL: '//trim(line)
       end do
       close (unit)

@@ -8,8 +8,8 @@ module random_schemes
    use mechanism, only: measure_line, measure_angle, measure_xi, measure_sum, drive_angle, drive_relangle, drive_x, &
       drive_y
    use schemes, only: scheme_t, pair_t, measure_t, drive_t, angle_unit, link_at, double
-   use scheme_draft, only: draft_t, new_draft, number, square, add_link, add_point, world, end_group, shuffle
-   use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
+   use scheme_builder, only: builder_t, new_builder, number, square, add_link, add_point, world, end_group, shuffle
+   use scheme_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram
    implicit none
    private
@@ -39,11 +39,11 @@ contains
    function random_scheme(seed, set) result(s)
       integer, intent(in) :: seed, set
       type(scheme_t) :: s
-      type(draft_t), allocatable :: d
+      type(builder_t), allocatable :: d
       integer :: k, parts, ground
 
       allocate (d)
-      d = new_draft(new_dice(seed + 1000000000*(set - 1)))
+      d = new_builder(new_dice(seed + 1000000000*(set - 1)))
       call begin_scheme(d, seed)
       parts = merge(2, 1, chance(d%dice, 0.15_wp))
       do k = 1, parts
@@ -141,12 +141,12 @@ contains
       integer, intent(in) :: seed
       logical, intent(in) :: has_surplus
       type(scheme_t) :: s
-      type(draft_t), allocatable :: d
+      type(builder_t), allocatable :: d
       integer, parameter :: kinds(6) = [3, 3, 3, 5, 6, 13]
       integer :: k, points, pairs
 
       allocate (d)
-      d = new_draft(new_dice(seed + 500000000))
+      d = new_builder(new_dice(seed + 500000000))
       call begin_scheme(d, seed)
       d%scale = magnitude(d%dice, merge(6, 1, chance(d%dice, 0.5_wp)))
       d%size = d%scale
@@ -172,7 +172,7 @@ contains
 
    !> Equations more by the dice; of seven kinds six have the motion of those that are there.
    subroutine add_surplus(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: k
 
       select case (throw(d%dice, 7))
@@ -190,7 +190,7 @@ contains
 
    !> A prismatic pair once more, between other points of its links.
    subroutine add_parallel_guide(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(pair_t) :: pair
       real(qp) :: where(2), e(2), theta
       integer :: k, links(2)
@@ -214,7 +214,7 @@ contains
 
    !> A drive once more, of an angle also by the angle to a ground link.
    subroutine repeat_drive(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(drive_t) :: drive
       integer :: k, ground
 
@@ -232,7 +232,7 @@ contains
 
    !> A coordinate of a point, held where it is: the drives give its place already, and move it elsewhere.
    subroutine drive_a_point(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(drive_t) :: drive
       real(qp) :: place(2)
 
@@ -246,7 +246,7 @@ contains
 
    !> Time, units and method.
    subroutine begin_scheme(d, seed)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: seed
       real(qp) :: span, start
       character(8) :: by_dice
@@ -283,7 +283,7 @@ contains
 
    !> AT cards behind TIME, or in its place.
    subroutine add_instants(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: k
 
       do k = 1, throw(d%dice, 4)
@@ -296,7 +296,7 @@ contains
 
    !> An independent mechanism: driven links, and groups on these.
    subroutine add_part(d, class)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: class
       integer :: k, groups
 
@@ -317,9 +317,9 @@ contains
 
    !> A group of a kind by its number, at the first place where it is not near a singularity.
    subroutine add_some(d, kind, class)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: kind, class
-      type(draft_t), allocatable :: before
+      type(builder_t), allocatable :: before
       type(dice_t) :: dice
       real(qp) :: way
       logical :: kept
@@ -341,7 +341,7 @@ contains
    end subroutine add_some
 
    subroutine add_kind(d, kind, way)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: kind
       real(qp), intent(in) :: way
 
@@ -368,7 +368,7 @@ contains
 
    !> Few groups are much smaller than the others.
    subroutine choose_region(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
 
       d%size = d%scale
       d%centre = 0.0_qp
@@ -379,7 +379,7 @@ contains
 
    !> What is left: estimates, orders, what is printed, pairs that are there twice.
    subroutine end_scheme(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: k, twice
 
       associate (s => d%s)
@@ -402,7 +402,7 @@ contains
 
    !> The estimates of the deck: the assembly with all its digits, or near it.
    subroutine estimate_links(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp) :: off
       integer :: k, c
 

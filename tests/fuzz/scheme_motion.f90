@@ -45,19 +45,19 @@ module scheme_motion
    real(qp), parameter :: too_near = 1.0e-6_qp
    !> The sine of the angle from a change point within which an antiparallelogram may be so fast.
    real(qp), parameter :: whip = 0.3_qp
-   !> A BRANCH card whose time lies so near to that of a change point, by the sine of the angle there, may mean it or not:
-   !> the program knows that time to a substep of 1E-4 rad.
+   !> A BRANCH card whose time lies so near to that of a change point, by the sine of the angle there, may mean it or
+   !> not: the program knows that time to a substep of 1E-4 rad.
    real(qp), parameter :: same_time = 3.0e-4_qp
    !> More steps than this are not taken.
    integer, parameter :: most_tries = 5000
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
    real(qp), parameter :: safe_ratio = 0.02_qp, bend = 3.0_qp
    real(qp), parameter :: rough = 1.0e-14_qp, exact = max(1.0e-26_qp, 256*epsilon(1.0_qp))
-   !> A base whose ends are places so far away, in its own size, is rounded: whether the branches of a parallelogram on it
-   !> cross nobody can tell.
+   !> A base whose ends are places so far away, in its own size, is rounded: whether the branches of a parallelogram on
+   !> it cross nobody can tell.
    real(qp), parameter :: farthest = 1.0e4_qp
-   !> Radians beyond which the rounding of angles leaves so wide a place without velocities about a change point that the
-   !> program refuses to pass it: its square is in proportion to the angle.
+   !> Radians beyond which the rounding of angles leaves so wide a place without velocities about a change point that
+   !> the program refuses to pass it: its square is in proportion to the angle.
    real(qp), parameter :: largest_angle = 15.0_qp
    !> At the first instant the assembly, rounded as the deck is, is so near; beside lengths much larger than those of a
    !> group, of its own ground link perhaps, so many roundings of them.
@@ -328,9 +328,9 @@ contains
    end subroutine follow_parallelogram
 
    !> At the time `at` of a change point of group `k` a BRANCH card that no change point has served, and whose time is
-   !> passed on the way `h`, may name a link of a parallelogram that hangs on this group. Where both are in one block, the
-   !> change point is that link's too. So it is with any other parallelogram where equations are redundant: those that
-   !> depend on one another are one block. Which branch either group takes is unknown then.
+   !> passed on the way `h`, may name a link of a parallelogram that hangs on this group. Where both are in one block,
+   !> the change point is that link's too. So it is with any other parallelogram where equations are redundant: those
+   !> that depend on one another are one block. Which branch either group takes is unknown then.
    pure subroutine ask_others(s, trial, k, at, h)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(inout) :: trial

@@ -11,8 +11,8 @@ module scheme_results
    private
    public :: verdict_t, judge
 
-   !> The error of a number may be so many times what the program tells of it, which is a matter of chance: of 2.5 million
-   !> numbers two were off by more than that, by 1.2 times as much.
+   !> The error of a number may be so many times what the program tells of it, which is a matter of chance: of 2.5
+   !> million numbers two were off by more than that, by 1.2 times as much.
    real(qp), parameter :: of_told = 3.0_qp
    !> The last bits of a number.
    real(qp), parameter :: bits = 4.0_qp*epsilon(1.0_real64)
@@ -24,8 +24,8 @@ module scheme_results
    real(qp), parameter :: safe_margin = 1.0e-4_qp
    !> The sine of the angle from a change point up to which there may be no velocities.
    real(qp), parameter :: beside_change = 1.0e-4_qp
-   !> The one matrix of METHOD DENSE, or of redundant equations, may have no velocities for a group that is smaller than this
-   !> part of another one; where they end, so does the motion that is followed.
+   !> The one matrix of METHOD DENSE, or of redundant equations, may have no velocities for a group that is smaller than
+   !> this part of another one; where they end, so does the motion that is followed.
    real(qp), parameter :: small_group = 0.01_qp
    !> Points that are closer, in lengths of their mechanism, may coincide: their direction is not compared.
    real(qp), parameter :: close = 1.0e-6_qp
@@ -45,23 +45,23 @@ module scheme_results
    type :: so_far_t
       logical, allocatable :: found(:)         !< had positions wherever one was asked for
       logical, allocatable :: begun(:)         !< are followed: at the first instant they had velocities
-      logical, allocatable :: told(:)          !< errors were told of all its numbers: otherwise nothing is known of them,
-                                               !< as behind dyads much smaller than what moves them
+      logical, allocatable :: told(:)          !< errors were told of all its numbers: otherwise nothing is known of
+                                               !< them, as behind dyads much smaller than what moves them
    end type so_far_t
 
    type :: verdict_t
       character(:), allocatable :: text        !< the first thing that is wrong
       integer :: instants = 0, numbers = 0     !< compared
-      integer :: lost = 0, unknown = 0         !< rows beyond a limit; of groups whose truth is not known
-      integer :: flagged = 0                   !< rows flagged that have a truth, not far from a singularity
+      integer :: lost = 0, unknown = 0         !< rows beyond a limit; of groups whose reference is not known
+      integer :: flagged = 0                   !< rows flagged that have a reference, not far from a singularity
       integer :: above = 0                     !< numbers that are off by more than the error told
       real(qp) :: worst(0:2) = 0.0_qp          !< largest errors, in units of what is allowed
    end type verdict_t
 
 contains
 
-   !> Judges the file `path`, the results of `s`. `is_too_long`: the listing says of a motion that it takes more substeps
-   !> than are tried.
+   !> Judges the file `path`, the results of `s`. `is_too_long`: the listing says of a motion that it takes more
+   !> substeps than are tried.
    subroutine judge(s, path, is_too_long, v)
       type(scheme_t), intent(in) :: s(:)
       character(*), intent(in) :: path
@@ -105,7 +105,7 @@ contains
          if (set < 1 .or. set > size(s)) call blame(v%text, 'NUMBER OF THE SET')
          if (allocated(v%text)) return
          call begin_motion(s(set), row%t, m, problem)
-         if (allocated(problem)) call blame(v%text, 'THE TRUTH: '//problem)
+         if (allocated(problem)) call blame(v%text, 'THE REFERENCE: '//problem)
          if (allocated(problem)) return
          regular = m
          so_far%found = [(.true., k=1, size(s(set)%groups))]
@@ -117,11 +117,11 @@ contains
       call move_to(s(set), row%t, m)
       if (all(m%status == regular%status)) regular = m
       v%instants = v%instants + 1
-      if (.not. closes(s(set), m)) call blame(v%text, 'THE TRUTH DOES NOT CLOSE AT '//where(row))
+      if (.not. closes(s(set), m)) call blame(v%text, 'THE REFERENCE DOES NOT CLOSE AT '//where(row))
    end subroutine begin_instant
 
-   !> A row against the motion `m`. After an instant without a position METHOD MATRIX may find another assembly, from the
-   !> deck's estimate, and says so: no limit keeps it from that.
+   !> A row against the motion `m`. After an instant without a position METHOD MATRIX may find another assembly, from
+   !> the deck's estimate, and says so: no limit keeps it from that.
    subroutine judge_row(s, m, row, is_too_long, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
@@ -129,7 +129,7 @@ contains
       logical, intent(in) :: is_too_long
       type(so_far_t), intent(inout) :: so_far
       type(verdict_t), intent(inout) :: v
-      type(jet_t) :: truth(3)
+      type(jet_t) :: reference(3)
       real(qp) :: scale, unit(3), per_unit
       integer, allocatable :: group(:)
       integer :: status
@@ -154,7 +154,8 @@ contains
          end if
       end if
       ! Where two points are close, digits of their direction are lost, and there may be no direction.
-      if (row%mark /= '' .and. .not. (row%kind == 'M' .and. any(row%mark == [character(12) :: 'COINCIDE', 'UNKNOWN']))) &
+      if (row%mark /= '' .and. &
+         .not. (row%kind == 'M' .and. any(row%mark == [character(12) :: 'COINCIDE', 'UNKNOWN']))) &
          call judge_flag(s, m, group, row, is_too_long, so_far, v)
       if (any(group > 0) .and. row%kind /= 'M') then
          associate (k => maxval(group))
@@ -167,17 +168,17 @@ contains
             end if
          end associate
       end if
-      truth = true_values(s, m, row)
+      reference = true_values(s, m, row)
       if (row%kind == 'M') then
-         if (.not. truth(3)%v > 0.0_qp) then
+         if (.not. reference(3)%v > 0.0_qp) then
             v%unknown = v%unknown + 1
             return
          end if
          ! The turns of a direction are another matter.
          per_unit = 1.0_qp/angle_unit(s)
-         if (s%measures(row%number)%is_angle) truth(1)%v = truth(1)%v &
-            + 2.0_qp*pi_q*per_unit*anint((row%value(1) - truth(1)%v)/(2.0_qp*pi_q*per_unit))
-         truth(2:) = jet_t()
+         if (s%measures(row%number)%is_angle) reference(1)%v = reference(1)%v &
+            + 2.0_qp*pi_q*per_unit*anint((row%value(1) - reference(1)%v)/(2.0_qp*pi_q*per_unit))
+         reference(2:) = jet_t()
       end if
       ! Of a point of the ground the sum of its own numbers is rounded, and no error is told.
       scale = 1.0_qp
@@ -186,16 +187,16 @@ contains
       if (row%kind == 'M' .and. .not. any(group > 0)) scale = maxval(s%groups%scale)
       if (any(group > 0)) scale = maxval(s%groups(pack(group, group > 0))%scale)
       unit = [scale, scale, 1.0_qp/angle_unit(s)]
-      call compare(truth%v, row, 0, unit, any(group > 0) .or. row%kind == 'M', v)
+      call compare(reference%v, row, 0, unit, any(group > 0) .or. row%kind == 'M', v)
       if (.not. any(group > 0)) return
-      call compare(truth%d, row, 1, unit/s%span, .true., v)
-      call compare(truth%dd, row, 2, unit/s%span**2, .true., v)
+      call compare(reference%d, row, 1, unit/s%span, .true., v)
+      call compare(reference%dd, row, 2, unit/s%span**2, .true., v)
    end subroutine judge_row
 
    !> Numbers of derivative `k`, as far as they are there; `unit`: their size. Where it `moves` an error that
    !> is not told says that nothing is known of the number.
-   subroutine compare(truth, row, k, unit, moves, v)
-      real(qp), intent(in) :: truth(3), unit(3)
+   subroutine compare(reference, row, k, unit, moves, v)
+      real(qp), intent(in) :: reference(3), unit(3)
       type(row_t), intent(in) :: row
       integer, intent(in) :: k
       logical, intent(in) :: moves
@@ -207,18 +208,18 @@ contains
          i = 3*k + c
          if (.not. row%known(i) .or. (moves .and. .not. row%is_told(i))) cycle
          v%numbers = v%numbers + 1
-         allowed = of_told*row%error(i) + bits*abs(truth(c)) + nothing*unit(c)
-         if (.not. row%is_told(i)) allowed = untold*max(abs(truth(c)), unit(c))
-         off = abs(row%value(i) - truth(c))/max(allowed, tiny(allowed))
-         if (row%is_told(i) .and. abs(row%value(i) - truth(c)) > row%error(i) + bits*abs(truth(c)) + nothing*unit(c)) &
-            v%above = v%above + 1
+         allowed = of_told*row%error(i) + bits*abs(reference(c)) + nothing*unit(c)
+         if (.not. row%is_told(i)) allowed = untold*max(abs(reference(c)), unit(c))
+         off = abs(row%value(i) - reference(c))/max(allowed, tiny(allowed))
+         if (row%is_told(i) .and. abs(row%value(i) - reference(c)) > row%error(i) + bits*abs(reference(c)) &
+            + nothing*unit(c)) v%above = v%above + 1
          v%worst(k) = max(v%worst(k), off)
          if (.not. off <= 1.0_qp) call blame(v%text, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
-            told(row%value(i))//' FOR '//told(truth(c))//', ERROR TOLD '//told(row%error(i)))
+            told(row%value(i))//' FOR '//told(reference(c))//', ERROR TOLD '//told(row%error(i)))
       end do
    end subroutine compare
 
-   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, nothing
+   !> A flag where the reference is known: needless, unless its mechanism has been near a singularity, nothing
    !> was known of it, its motion is told to be too long, METHOD DENSE was to pass a change point, or one matrix has a
    !> group much smaller than others.
    subroutine judge_flag(s, m, group, row, is_too_long, so_far, v)
@@ -315,33 +316,33 @@ contains
    end function groups_of
 
    !> What the three columns of each derivative should be, in the deck's units.
-   function true_values(s, m, row) result(truth)
+   function true_values(s, m, row) result(reference)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       type(row_t), intent(in) :: row
-      type(jet_t) :: truth(3), d(2), theta
+      type(jet_t) :: reference(3), d(2), theta
       real(qp) :: per_unit
 
       per_unit = 1.0_qp/angle_unit(s)
       select case (row%kind)
       case ('L')
          associate (b => m%b(row%number))
-            truth = [b%x, b%y, per_unit*b%phi]
+            reference = [b%x, b%y, per_unit*b%phi]
          end associate
       case ('P')
-         truth(:2) = place(m%b(link_at(s, row%number)), s%points(row%number)%offset)
+         reference(:2) = place(m%b(link_at(s, row%number)), s%points(row%number)%offset)
       case ('M')
-         truth(3)%v = huge(1.0_qp)
-         truth(1) = measured(row%number, truth(3)%v)
-         if (s%measures(row%number)%is_angle) truth(1) = per_unit*truth(1)
+         reference(3)%v = huge(1.0_qp)
+         reference(1) = measured(row%number, reference(3)%v)
+         if (s%measures(row%number)%is_angle) reference(1) = per_unit*reference(1)
       case default
          associate (pair => s%pairs(row%number))
             associate (i => m%b(link_at(s, pair%point_i)), j => m%b(link_at(s, pair%point_j)))
-               truth(1) = per_unit*(j%phi - i%phi)
+               reference(1) = per_unit*(j%phi - i%phi)
                if (.not. pair%prismatic) return
                d = place(j, s%points(pair%point_j)%offset) - place(i, s%points(pair%point_i)%offset)
                theta = i%phi + pair%alpha*angle_unit(s)
-               truth(1) = d(1)*cos(theta) + d(2)*sin(theta)
+               reference(1) = d(1)*cos(theta) + d(2)*sin(theta)
             end associate
          end associate
       end select

@@ -1,4 +1,4 @@
-!> Tests. Random mechanisms as plain data, from ground links outwards: the groups of `draft_groups`, near a singularity
+!> Tests. Random mechanisms as plain data, from ground links outwards: the groups of `scheme_groups`, near a singularity
 !> or not, each with as many drives as it has freedoms. The position comes first, so that every mechanism is assembled
 !> at t = 0 as far as rounding lets it be.
 module random_mechanisms
@@ -9,9 +9,9 @@ module random_mechanisms
    use deck, only: read_deck
    use dice, only: new_dice, throw, chance
    use schemes, only: write_scheme, form_any
-   use scheme_draft, only: draft_t, new_draft, number, anywhere, add_links, join, pick_base, begin_group, shuffle
-   use draft_drives, only: add_drive, add_point_drive
-   use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
+   use scheme_builder, only: builder_t, new_builder, number, anywhere, add_links, join, pick_base, begin_group, shuffle
+   use scheme_drives, only: add_drive, add_point_drive
+   use scheme_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table
    implicit none
    private
@@ -25,11 +25,11 @@ contains
       integer, intent(in) :: seed, groups
       real(wp), intent(in) :: special
       type(mechanism_t) :: m
-      type(draft_t), allocatable :: d
+      type(builder_t), allocatable :: d
       integer :: k, ground
 
       allocate (d)
-      d = new_draft(new_dice(seed))
+      d = new_builder(new_dice(seed))
       d%special = special
       d%shared = special
       d%to = 1.0_qp
@@ -48,9 +48,9 @@ contains
       m = as_read(d)
    end function random_mechanism
 
-   !> The mechanism of the draft `d`, as the reader of decks makes it, but without instants.
+   !> The mechanism of the builder `d`, as the reader of decks makes it, but without instants.
    function as_read(d) result(m)
-      type(draft_t), intent(in) :: d
+      type(builder_t), intent(in) :: d
       type(mechanism_t) :: m
       character(*), parameter :: path = 'unit_test_random.tmp'
       type(mechanism_t), allocatable :: sets(:)
@@ -69,7 +69,7 @@ contains
    end function as_read
 
    subroutine add_group(d, way)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: way
 
       select case (throw(d%dice, 16))
@@ -89,7 +89,7 @@ contains
 
    !> One link that turns, driven by a coordinate of its end; or two in a row, driven by both.
    subroutine add_driven_ends(d, links, way)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: links
       real(qp), intent(in) :: way
       integer :: first

@@ -1,6 +1,6 @@
 !> Tests. A scheme that grows by the dice: links, pairs and drives, whose numbers are taken from an assembly that is
 !> there first.
-module scheme_draft
+module scheme_builder
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, constant_jet
    use dice, only: dice_t, throw, chance, between, disorder
@@ -11,10 +11,10 @@ module scheme_draft
    use group_newton, only: outcome_t, solve_group
    implicit none
    private
-   public :: draft_t, new_draft, add_link, add_links, add_point, join, number, square, begin_group, end_group, anywhere
-   public :: place_on_base, pick_base, world, shuffle
+   public :: builder_t, new_builder, add_link, add_links, add_point, join, number, square, begin_group, end_group
+   public :: anywhere, place_on_base, pick_base, world, shuffle
 
-   type :: draft_t
+   type :: builder_t
       type(dice_t) :: dice
       type(scheme_t) :: s
       type(body_t), allocatable :: b(:)        !< the assembly
@@ -28,7 +28,7 @@ module scheme_draft
       integer :: part = 1                      !< the independent mechanism that is being made,
       integer :: first_link = 1                !< and its first link
       real(qp) :: inverse = 1.0_qp             !< the largest norm of an inverse Jacobian in the assembly
-   end type draft_t
+   end type builder_t
 
    !> A dyad is kept where its margin is above this, another group where the norm of the inverse is below that.
    real(qp), parameter :: least_margin = 0.04_qp, largest_inverse = 60.0_qp, largest_wide_inverse = 1000.0_qp
@@ -37,17 +37,17 @@ module scheme_draft
 contains
 
    !> Nothing yet, by these `dice`.
-   function new_draft(dice) result(d)
+   function new_builder(dice) result(d)
       type(dice_t), intent(in) :: dice
-      type(draft_t) :: d
+      type(builder_t) :: d
 
       d%dice = dice
       allocate (d%s%links(0), d%s%points(0), d%s%pairs(0), d%s%drives(0), d%s%groups(0), d%s%at(0), d%b(0))
-   end function new_draft
+   end function new_builder
 
    !> A number in the range from `low` to `high`.
    real(qp) function number(d, low, high)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: low, high
 
       number = between(d%dice, real(low, wp), real(high, wp))
@@ -55,7 +55,7 @@ contains
 
    !> A way up to `reach` along either axis.
    function square(d, reach) result(p)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: reach
       real(qp) :: p(2)
 
@@ -65,7 +65,7 @@ contains
 
    !> A place of the group's region.
    function anywhere(d) result(p)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp) :: p(2)
 
       p = square(d, 3.0_qp)
@@ -74,7 +74,7 @@ contains
    end function anywhere
 
    real(qp) function some_angle(d) result(angle)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
 
       angle = number(d, -pi_q, pi_q)
       if (chance(d%dice, d%special)) angle = pi_q/2.0_qp*anint(angle/(pi_q/2.0_qp))
@@ -89,7 +89,7 @@ contains
 
    !> A link anywhere, as the deck's numbers give it.
    integer function add_link(d, is_ground) result(l)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       logical, intent(in) :: is_ground
       type(link_t) :: link
       type(body_t) :: b
@@ -111,7 +111,7 @@ contains
 
    !> The number of the first of `n` new links.
    integer function add_links(d, n, is_ground) result(first)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: n
       logical, intent(in) :: is_ground
       integer :: k
@@ -123,7 +123,7 @@ contains
 
    !> A point of `link` at the place `where` of the assembly.
    integer function add_point(d, link, where) result(p)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: link
       real(qp), intent(in) :: where(2)
       real(qp) :: u(2)
@@ -138,7 +138,7 @@ contains
 
    !> The place of a point in the assembly.
    function world(d, point) result(p)
-      type(draft_t), intent(in) :: d
+      type(builder_t), intent(in) :: d
       integer, intent(in) :: point
       real(qp) :: p(2)
       type(jet_t) :: q(2)
@@ -150,7 +150,7 @@ contains
    !> A pair of links `i` and `j` at `where`, in this order or the other; some, instead, at an old joint or at the
    !> origin of one of the two.
    subroutine join(d, i, j, is_prismatic, where)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: i, j
       logical, intent(in) :: is_prismatic
       real(qp), intent(in) :: where(2)
@@ -183,7 +183,7 @@ contains
 
    !> Now and then `where` becomes the place of an old joint, or of the origin, of one of two links.
    subroutine share_place(d, link, where)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: link(2)
       real(qp), intent(inout) :: where(2)
       integer :: k
@@ -201,7 +201,7 @@ contains
 
    !> A link that a group may hang on: the ground, or one of the mechanism that is being made.
    integer function pick_base(d) result(l)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: k
 
       do k = 1, 100
@@ -213,7 +213,7 @@ contains
 
    !> A place for a joint on link `l`.
    function place_on_base(d, l) result(p)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: l
       real(qp) :: p(2)
 
@@ -226,7 +226,7 @@ contains
 
    !> Links, points and pairs in any order on the cards.
    subroutine shuffle(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
 
       d%s%link_order = disorder(d%dice, size(d%s%links))
       d%s%point_order = disorder(d%dice, size(d%s%points))
@@ -234,7 +234,7 @@ contains
    end subroutine shuffle
 
    subroutine begin_group(d, form)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: form
       type(group_t) :: new
 
@@ -249,7 +249,7 @@ contains
 
    !> The group is complete; `kept`: it is not near a singularity.
    subroutine end_group(d, kept)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       logical, intent(out) :: kept
       type(outcome_t) :: o
       type(jet_t) :: margin
@@ -279,7 +279,7 @@ contains
 
    !> The links outside the group that its pairs and drives name.
    subroutine find_bases(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: k
 
       associate (g => d%group)
@@ -304,4 +304,4 @@ contains
       if (any(g%bases == link)) return
       g%bases = [g%bases, link]
    end subroutine add_base
-end module scheme_draft
+end module scheme_builder

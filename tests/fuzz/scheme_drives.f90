@@ -1,6 +1,6 @@
 !> Tests. Drives of a scheme that grows by the dice: any kind, any law, with the value of the assembly at the first
 !> instant.
-module draft_drives
+module scheme_drives
    use kinds, only: wp
    use quad_jet, only: qp, pi_q, jet_t
    use dice, only: throw, chance
@@ -8,7 +8,7 @@ module draft_drives
    use mechanism, only: term_harmonic, term_power, term_table, term_cycloid
    use drive_laws, only: law_t, law_jet
    use group_newton, only: driven
-   use scheme_draft, only: draft_t, number, add_point, anywhere
+   use scheme_builder, only: builder_t, number, add_point, anywhere
    implicit none
    private
    public :: add_drive, add_point_drive, set_steady
@@ -17,7 +17,7 @@ contains
 
    !> A drive of `kind` that goes about so far as `amplitude`, in radians or lengths.
    subroutine add_drive(d, kind, subject, second, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: kind, subject, second
       real(qp), intent(in) :: amplitude
       type(drive_t) :: drive
@@ -37,7 +37,7 @@ contains
 
    !> X or Y of a new point of `link`.
    subroutine add_point_drive(d, kind, link, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: kind, link
       real(qp), intent(in) :: amplitude
 
@@ -46,7 +46,7 @@ contains
 
    !> A polynomial, mostly with a term, that makes a way of about `amplitude` between the first and the last instant.
    subroutine make_law(d, law, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(law_t), intent(out) :: law
       real(qp), intent(in) :: amplitude
       real(qp) :: span
@@ -73,7 +73,7 @@ contains
 
    !> Whole powers anywhere, others and negative ones where time does not come near zero.
    subroutine make_power(d, law, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(law_t), intent(inout) :: law
       real(qp), intent(in) :: amplitude
 
@@ -93,7 +93,7 @@ contains
 
    !> Rows from before the first instant to behind the last.
    subroutine make_table(d, law, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(law_t), intent(inout) :: law
       real(qp), intent(in) :: amplitude
       integer :: n, k
@@ -112,7 +112,7 @@ contains
 
    !> A rise somewhere among the instants, at times from the first on or up to the last.
    subroutine make_rise(d, law, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       type(law_t), intent(inout) :: law
       real(qp), intent(in) :: amplitude
 
@@ -128,7 +128,7 @@ contains
 
    !> The last drive goes on with one rate, by `way` from the first instant to the last.
    subroutine set_steady(d, way)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: way
       type(law_t) :: law
       type(jet_t) :: now
@@ -142,4 +142,4 @@ contains
          drive%law = law
       end associate
    end subroutine set_steady
-end module draft_drives
+end module scheme_drives

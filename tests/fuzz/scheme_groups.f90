@@ -1,15 +1,15 @@
 !> Tests. Groups of links by the dice: driven links, dyads of all five forms, triads, tetrads, chains and rings of 12 to
 !> 18 links, parallelograms, and links with several degrees of freedom with as many drives.
-module draft_groups
+module scheme_groups
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
    use dice, only: throw, chance
    use mechanism, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide
    use schemes, only: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram, double, point_t, &
       pair_t, set_trigonometry
-   use scheme_draft, only: draft_t, number, square, anywhere, add_link, add_links, join, pick_base, place_on_base, &
+   use scheme_builder, only: builder_t, number, square, anywhere, add_link, add_links, join, pick_base, place_on_base, &
       begin_group
-   use draft_drives, only: add_drive, add_point_drive, set_steady
+   use scheme_drives, only: add_drive, add_point_drive, set_steady
    implicit none
    private
    public :: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, add_cylinder, &
@@ -20,7 +20,7 @@ contains
    !> A link that turns on another, driven by its angle or by that between the two; few go through whole turns, on a
    !> short arm.
    subroutine add_crank(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: base, l
       real(qp) :: where(2)
@@ -48,7 +48,7 @@ contains
 
    !> A link that slides on another, driven by its slide or by a coordinate.
    subroutine add_slider(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: base, l
 
@@ -67,7 +67,7 @@ contains
    end subroutine add_slider
 
    subroutine add_dyad(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       character(3), parameter :: words(5) = ['RRR', 'RRP', 'RPR', 'PRP', 'RPP']
       integer, parameter :: forms(5) = [form_rrr, form_rrp, form_rpr, form_prp, form_rpp]
       integer :: which, e, f, first
@@ -88,7 +88,7 @@ contains
    !> `n` plates in a row, each on a leg, the first and the last on two: a triad for 1, 2 n + 2 links. A leg has two
    !> revolute pairs, or one of them and a prismatic one.
    subroutine add_plates(d, n)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: n
       integer :: plate, before, k, i
       real(qp) :: last(2), step(2)
@@ -111,7 +111,7 @@ contains
 
    !> A leg from `where` on `plate` to a link outside the group.
    subroutine add_leg(d, plate, where)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: plate
       real(qp), intent(in) :: where(2)
       integer :: base, l, slide
@@ -128,7 +128,7 @@ contains
 
    !> Four links in a ring, two of them on others.
    subroutine add_net(d)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer :: e, f, first, k, slide
 
       call begin_group(d, form_any)
@@ -145,7 +145,7 @@ contains
 
    !> `n` links in a ring, every second one on a link outside.
    subroutine add_ring(d, n)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: n
       integer :: k, first, base
       real(qp) :: middle(2), p(2), radius
@@ -168,7 +168,7 @@ contains
 
    !> Three links in a row between two others, driven somewhere.
    subroutine add_open_chain(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: e, f, first, slide
 
@@ -198,7 +198,7 @@ contains
 
    !> A link on no other: x and y of one of its points are driven, and an angle or a coordinate of another point.
    subroutine add_floating(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: l, base
 
@@ -221,7 +221,7 @@ contains
 
    !> A link moved by a cylinder.
    subroutine add_cylinder(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: e, f, first
       real(qp) :: p(2)
@@ -240,7 +240,7 @@ contains
 
    !> Two slides one upon the other, driven as slides, or the upper one along x and y.
    subroutine add_table(d, amplitude)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
       integer :: e, first
 
@@ -261,7 +261,7 @@ contains
    !> A parallelogram of `bars` bars on a link, in numbers whose sums are exact; two of them may take the other branch
    !> past a change point. Where more of them stand `in_line`, they all come to it at once.
    subroutine add_parallelogram(d, bars, way, branches, in_line)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: bars
       real(qp), intent(in) :: way
       logical, intent(in) :: branches, in_line
@@ -300,7 +300,7 @@ contains
 
    !> The links from `first` on to where the parallelogram has them, its bars at 0.4 to 1.1 rad from its base lines.
    subroutine lay_parallelogram(d, base, first, bars, pivot, arm, length)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: base, first, bars
       real(qp), intent(in) :: pivot(2), arm(2, bars), length
       real(qp) :: phi, o(2), r(2)
@@ -326,7 +326,7 @@ contains
 
    !> Pairs: base and bar 1, bar 1 and coupler, coupler and bar 2, bar 2 and base, and two for each further bar.
    subroutine join_parallelogram(d, bars)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: bars
       integer :: k, p
 
@@ -339,7 +339,7 @@ contains
    end subroutine join_parallelogram
 
    subroutine join_points(d, i, j)
-      type(draft_t), intent(inout) :: d
+      type(builder_t), intent(inout) :: d
       integer, intent(in) :: i, j
       type(pair_t) :: pair
 
@@ -347,4 +347,4 @@ contains
       pair%point_j = i + j - pair%point_i
       d%s%pairs = [d%s%pairs, pair]
    end subroutine join_points
-end module draft_groups
+end module scheme_groups
