@@ -111,7 +111,7 @@ contains
       a(:, 6) = [tax - er*rise - wr*wr*run, 0.0_wp, 0.0_wp]
    end subroutine fast_yoke
 
-   !> Andrews' squeezing mechanism in millimetres, links K1 to K7; see closed_forms_legs.
+   !> Andrews' squeezing mechanism in millimetres, links K1 to K7; see closed_forms_linkages.
    pure subroutine fast_andrews(phi, rate, n, q, v, a)
       real(wp), intent(in) :: phi, rate
       integer, intent(in) :: n
@@ -139,7 +139,7 @@ contains
       call put_link(a0, k7, q(:, 8), v(:, 8), a(:, 8))
    end subroutine fast_andrews
 
-   !> Jansen's leg; see closed_forms_legs.
+   !> Jansen's leg; see closed_forms_linkages.
    pure subroutine fast_jansen(phi, rate, n, q, v, a)
       real(wp), intent(in) :: phi, rate
       integer, intent(in) :: n

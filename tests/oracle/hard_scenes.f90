@@ -3,13 +3,13 @@
 module hard_scenes
    use kinds, only: wp
    use plane_vectors, only: degree
-   use quad_jet, only: qp, jet_t, constant_jet, operator(+)
+   use quad_jet, only: qp, jet_t, operator(+)
    use failures, only: failure_t
    use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count
    use deck, only: read_deck
    use jet_closure, only: body_jet_t
    use jet_drives, only: drive_jet
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
+   use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, flat
    use closed_forms, only: closed_form
    use sample_mechanisms, only: four_bar, crank_slider, magnified
    implicit none
@@ -143,45 +143,35 @@ contains
       end do
    end function exact_links
 
+   !> The links of the four-bar `m` with its driven link at `phi`.
    function four_bar_form(m, phi) result(links)
       type(mechanism_t), intent(in) :: m
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(4)
-      type(place_t) :: a0, b0, a, b
+      type(place_t) :: b0, a, b
       real(qp) :: r(4)
 
       r = [m%points(2)%offset(1), m%points(4)%offset(1), m%points(6)%offset(1), m%points(8)%offset(1)]
-      a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(r(1), 0.0_qp)
       if (m%drives(1)%subject == 2) then
-         a = polar(a0, r(2), phi)
-         b = corner(a, r(3), b0, r(4), 1.0_qp)
-         links(2) = body('CRANK', a0, phi)
-         links(4) = body('ROCKER', b0, direction(b0, b))
+         a = polar(origin, r(2), phi)
+         links = bars(phi, a, corner(a, r(3), b0, r(4), 1.0_qp), b0)
       else
          b = polar(b0, r(4), phi)
-         a = corner(a0, r(2), b, r(3), 1.0_qp)
-         links(2) = body('CRANK', a0, direction(a0, a))
-         links(4) = body('ROCKER', b0, phi)
+         a = corner(origin, r(2), b, r(3), 1.0_qp)
+         links = bars(direction(origin, a), a, b, b0)
       end if
-      links(1) = body('BASE', a0, constant_jet(0.0_qp))
-      links(3) = body('COUPLER', a, direction(a, b))
+      links(m%drives(1)%subject)%phi = phi
    end function four_bar_form
 
+   !> The links of the slider-crank `m` with its crank at `phi`.
    function slider_form(m, phi) result(links)
       type(mechanism_t), intent(in) :: m
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(4)
-      type(jet_t) :: flat
-      type(place_t) :: o, pin, piston
 
-      flat = constant_jet(0.0_qp)
-      o = fixed_place(0.0_qp, 0.0_qp)
-      pin = polar(o, real(m%points(4)%offset(1), qp), phi)
-      piston = on_line(pin, real(m%points(6)%offset(1), qp), fixed_place(0.0_qp, real(m%points(2)%offset(2), qp)), &
-         flat, 1.0_qp)
-      links = [body('BASE', o, flat), body('CRANK', o, phi), body('ROD', pin, direction(pin, piston)), &
-               body('PISTON', piston, flat)]
+      links = slider_crank(phi, [real(m%points(4)%offset(1), qp), real(m%points(6)%offset(1), qp)], &
+         fixed_place(0.0_qp, real(m%points(2)%offset(2), qp)), flat)
    end function slider_form
 
    !> The deck's rough positions: the exact ones at the first instant, but for a thousandth.

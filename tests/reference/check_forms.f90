@@ -14,7 +14,8 @@ program check_forms
    use quad_decks, only: length, angle, law
    use closed_forms_dyads, only: place_t, body_t, place_on
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
-   use closed_forms, only: closed_form, hand_count
+   use closed_forms, only: closed_form
+   use hand_groups, only: count_by_hand
    implicit none
    !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
    real(qp), parameter :: tolerance = 1.0e-28_qp
@@ -57,7 +58,7 @@ contains
       integer :: k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
-      call count_one(tally, agree(hand_count(name), find_structure(m)), &
+      call count_one(tally, agree(count_by_hand(name), find_structure(m)), &
          trim(what)//' links and pairs as counted by hand')
       pairs = 0.0_qp
       grounds = 0.0_qp

@@ -2,14 +2,14 @@
 !> (Gosselin and Sefrioui 1991; Merlet, Parallel Robots), a four-bar by the law of cosines. Roots are bracketed by those of
 !> the derivatives, so none is missed.
 module closed_forms_assemblies
-   use quad_jet, only: qp, degree_q, constant_jet, time_jet, operator(+), operator(*)
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, direction, four_bar_links
+   use quad_jet, only: qp, constant_jet
+   use closed_forms_dyads, only: place_t, body_t, base, fixed_place, body, direction
    implicit none
    private
-   public :: platform_assemblies, platform, triple_rocker, crank_limit
+   public :: platform_assemblies, platform, crank_limit
 
    !> Joints of the base and of the platform, and the legs between them.
-   real(qp), parameter :: base(2, 3) = reshape([0.0_qp, 0.0_qp, 15.91_qp, 0.0_qp, 0.0_qp, 10.0_qp], [2, 3])
+   real(qp), parameter :: feet(2, 3) = reshape([0.0_qp, 0.0_qp, 15.91_qp, 0.0_qp, 0.0_qp, 10.0_qp], [2, 3])
    real(qp), parameter :: plate(2, 3) = reshape([0.0_qp, 0.0_qp, 17.04_qp, 0.0_qp, 13.2363732394_qp, 16.0967084668_qp], [2, 3])
    real(qp), parameter :: leg(3) = [14.98_qp, 15.38_qp, 12.0_qp]
 
@@ -25,7 +25,7 @@ contains
       integer :: k
 
       do k = 1, 2
-         associate (a => base(:, k + 1), b => plate(:, k + 1))
+         associate (a => feet(:, k + 1), b => plate(:, k + 1))
             p(:, k) = 2.0_qp*half_angle(b(1), -b(2), -a(1))
             q(:, k) = 2.0_qp*half_angle(b(2), b(1), -a(2))
             s(:, k) = half_angle(-2.0_qp*dot_product(a, b), 2.0_qp*(a(1)*b(2) - a(2)*b(1)), &
@@ -58,7 +58,7 @@ contains
 
       do k = 1, 3
          turned = [plate(1, k)*cos(at(3)) - plate(2, k)*sin(at(3)), plate(1, k)*sin(at(3)) + plate(2, k)*cos(at(3))]
-         joint = at(:2) + turned - base(:, k)
+         joint = at(:2) + turned - feet(:, k)
          rows(k, :) = [joint, joint(2)*turned(1) - joint(1)*turned(2)]
          gap(k) = 0.5_qp*(leg(k)**2 - sum(joint**2))
       end do
@@ -141,26 +141,17 @@ contains
       integer :: k
       character(5), parameter :: names(3) = ['LEG-1', 'LEG-2', 'LEG-3']
 
-      links(1) = body('BASE', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp))
+      links(1) = base
       links(2) = body('PLATFORM', fixed_place(position(1), position(2)), constant_jet(position(3)))
       do k = 1, 3
          joint = fixed_place(position(1) + plate(1, k)*cos(position(3)) - plate(2, k)*sin(position(3)), &
             position(2) + plate(1, k)*sin(position(3)) + plate(2, k)*cos(position(3)))
-         foot = fixed_place(base(1, k), base(2, k))
+         foot = fixed_place(feet(1, k), feet(2, k))
          links(k + 2) = body(names(k), foot, direction(foot, joint))
       end do
    end function platform
 
-   !> Crank 2, coupler 1.5, rocker 3 on a base of 4; the crank at 57 deg + 5 deg t. `side`: 1 with the joint B to the left of
-   !> the way from A to B0.
-   pure function triple_rocker(t, side) result(links)
-      real(qp), intent(in) :: t, side
-      type(body_t) :: links(4)
-
-      links = four_bar_links((57.0_qp + 5.0_qp*time_jet(t))*degree_q, [2.0_qp, 1.5_qp, 3.0_qp, 4.0_qp], side)
-   end function triple_rocker
-
-   !> Its crank goes no further where coupler and rocker are in line, 4.5 long.
+   !> The crank of the triple rocker goes no further where coupler and rocker are in line, 4.5 long.
    pure real(qp) function crank_limit()
       crank_limit = acos((2.0_qp**2 + 4.0_qp**2 - 4.5_qp**2)/(2.0_qp*2.0_qp*4.0_qp))
    end function crank_limit

@@ -1,12 +1,11 @@
-!> Tests. The parts of which the closed forms are made: points, links and dyads, as jets in real128.
-!> Every formula is plane trigonometry; none of the program's equations or solvers is used.
+!> Tests. The words in which the closed forms are written: points, links and dyads, as jets in real128. Every formula is plane
+!> trigonometry; none of the program's equations or solvers is used.
 module closed_forms_dyads
-   use quad_jet, only: qp, jet_t, constant_jet, &
-      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
+   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
    implicit none
    private
-   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, corner, &
-      mirrored, on_line, four_bar_links, bars, natural_spline_3
+   public :: place_t, body_t, flat, origin, base, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, &
+      corner, mirrored, swapped, on_line, four_bar_links, bars, slider_crank, drawn_link, natural_spline_3
 
    !> A point of the plane.
    type :: place_t
@@ -19,6 +18,11 @@ module closed_forms_dyads
       type(jet_t) :: x, y, phi
    end type body_t
 
+   !> What stays 0, the origin of the plane's axes, and the ground that is drawn there.
+   type(jet_t), parameter :: flat = jet_t(0.0_qp, 0.0_qp, 0.0_qp)
+   type(place_t), parameter :: origin = place_t(flat, flat)
+   type(body_t), parameter :: base = body_t('BASE', flat, flat, flat)
+
 contains
 
    !> The point (x, y) of the ground.
@@ -28,13 +32,13 @@ contains
       p = place_t(constant_jet(x), constant_jet(y))
    end function fixed_place
 
-   !> The link `name` with its origin at `origin` and its axes at `phi`.
-   pure type(body_t) function body(name, origin, phi) result(b)
+   !> The link `name` with the origin of its axes at `p` and its axes at `phi`.
+   pure type(body_t) function body(name, p, phi) result(b)
       character(*), intent(in) :: name
-      type(place_t), intent(in) :: origin
+      type(place_t), intent(in) :: p
       type(jet_t), intent(in) :: phi
 
-      b = body_t(name, origin%x, origin%y, phi)
+      b = body_t(name, p%x, p%y, phi)
    end function body
 
    !> The point (xi, eta) of a link.
@@ -105,6 +109,18 @@ contains
       q = place_t(p%x + across*dy, p%y - across*dx)
    end function mirrored
 
+   !> The fourth corner of an antiparallelogram: the symmetry that changes `a` and `b` for one another changes `p` for
+   !> it. A mirror whose normal runs from a to b, through their middle; no square root.
+   pure type(place_t) function swapped(p, a, b) result(q)
+      type(place_t), intent(in) :: p, a, b
+      type(jet_t) :: dx, dy, along
+
+      dx = b%x - a%x
+      dy = b%y - a%y
+      along = ((2.0_qp*p%x - a%x - b%x)*dx + (2.0_qp*p%y - a%y - b%y)*dy)/(dx*dx + dy*dy)
+      q = place_t(p%x - along*dx, p%y - along*dy)
+   end function swapped
+
    !> The far end of a rod of `length` from `p` to the line through `o` in the direction `phi`: `side` +1.0 for the end
    !> farther on in that direction, -1.0 for the other.
    pure type(place_t) function on_line(p, length, o, phi, side) result(q)
@@ -127,7 +143,7 @@ contains
       type(body_t) :: links(4)
       type(place_t) :: a, b0
 
-      a = polar(fixed_place(0.0_qp, 0.0_qp), lengths(1), phi)
+      a = polar(origin, lengths(1), phi)
       b0 = fixed_place(lengths(4), 0.0_qp)
       links = bars(phi, a, corner(a, lengths(2), b0, lengths(3), side), b0)
    end function four_bar_links
@@ -137,12 +153,36 @@ contains
       type(jet_t), intent(in) :: phi
       type(place_t), intent(in) :: a, b, b0
       type(body_t) :: links(4)
-      type(place_t) :: a0
 
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = [base, body('CRANK', origin, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
    end function bars
+
+   !> A crank about (0, 0) at `phi`, a rod and a piston on the line through `o` in the direction `slope`, along which its axes
+   !> lie; `lengths` of crank and rod. The piston is at the far end of the rod.
+   pure function slider_crank(phi, lengths, o, slope) result(links)
+      type(jet_t), intent(in) :: phi, slope
+      real(qp), intent(in) :: lengths(2)
+      type(place_t), intent(in) :: o
+      type(body_t) :: links(4)
+      type(place_t) :: pin, piston
+
+      pin = polar(origin, lengths(1), phi)
+      piston = on_line(pin, lengths(2), o, slope, 1.0_qp)
+      links = [base, body('CRANK', origin, phi), body('ROD', pin, direction(pin, piston)), body('PISTON', piston, slope)]
+   end function slider_crank
+
+   !> The link `name` with the points `p` and `q`, which are drawn at `p_drawn` and `q_drawn`, as the origin of its axes
+   !> is drawn at `at`; the axes are parallel to those of the drawing.
+   pure type(body_t) function drawn_link(name, p, q, p_drawn, q_drawn, at) result(link)
+      character(*), intent(in) :: name
+      type(place_t), intent(in) :: p, q
+      real(qp), intent(in) :: p_drawn(2), q_drawn(2), at(2)
+      real(qp) :: drawn_direction
+
+      drawn_direction = atan2(q_drawn(2) - p_drawn(2), q_drawn(1) - p_drawn(1))
+      link = body(name, p, direction(p, q) - drawn_direction)
+      link = body(name, place_on(link, at(1) - p_drawn(1), at(2) - p_drawn(2)), link%phi)
+   end function drawn_link
 
    !> The natural cubic spline through (0, y0), (h, y1), (2h, y2). Its second derivative is 0 at the ends and
    !> m = 3 (y0 - 2 y1 + y2)/(2 h^2) in the middle, from the one equation (h/6)(0 + 4m + 0) = (y0 - 2 y1 + y2)/h.

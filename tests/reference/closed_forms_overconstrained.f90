@@ -1,83 +1,72 @@
 !> Tests. Closed forms of linkages that move although the count of freedoms (13) says that they cannot: some of their
 !> equations follow from the others. The lengths are those of the decks, written out again by hand.
 module closed_forms_overconstrained
-   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
-      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, corner, on_line
+   use quad_jet
+   use closed_forms_dyads
    implicit none
    private
-   public :: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
+   public :: overconstrained
 
 contains
 
-   !> Three cranks 1.5 at (0, 0), (4, 0) and (2, 1) carry one coupler, which only shifts.
-   pure function parallel_cranks(t) result(links)
-      real(qp), intent(in) :: t
-      type(body_t) :: links(5)
-      type(jet_t) :: phi, flat
-      type(place_t) :: a0
+   !> The links of the deck `name` at `time`; none for another deck.
+   pure function overconstrained(name, time) result(links)
+      character(*), intent(in) :: name
+      type(jet_t), intent(in) :: time
+      type(body_t), allocatable :: links(:)
 
-      phi = (10.0_qp + 30.0_qp*time_jet(t))*degree_q
-      flat = constant_jet(0.0_qp)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      links = [body('BASE', a0, flat), body('CRANK-1', a0, phi), body('CRANK-2', fixed_place(4.0_qp, 0.0_qp), phi), &
-               body('CRANK-3', fixed_place(2.0_qp, 1.0_qp), phi), body('COUPLER', polar(a0, 1.5_qp, phi), flat)]
+      select case (name)
+      case ('parallel_cranks'); links = parallel_cranks((10.0_qp + 30.0_qp*time)*degree_q)
+      case ('double_parallelogram'); links = double_parallelogram((30.0_qp + 8.0_qp*time)*degree_q)
+      case ('two_guides')
+         ! The carriage is on the line y = 0.5; its second shoe runs in a guide parallel to it.
+         links = slider_crank(0.5_qp + 0.75_qp*time, [1.0_qp, 3.0_qp], fixed_place(0.0_qp, 0.5_qp), flat)
+         links(4)%name = 'CARRIAGE'
+      case ('cognates'); links = cognates((20.0_qp + 24.0_qp*time)*degree_q)
+      case ('dixon'); links = dixon((-135.0_qp + 14.0_qp*sin(40.0_qp*degree_q*time))*degree_q)
+      case default; allocate (links(0))
+      end select
+   end function overconstrained
+
+   !> Three cranks 1.5 at (0, 0), (4, 0) and (2, 1) carry one coupler, which only shifts.
+   pure function parallel_cranks(phi) result(links)
+      type(jet_t), intent(in) :: phi
+      type(body_t) :: links(5)
+
+      links = [base, body('CRANK-1', origin, phi), body('CRANK-2', fixed_place(4.0_qp, 0.0_qp), phi), &
+               body('CRANK-3', fixed_place(2.0_qp, 1.0_qp), phi), body('COUPLER', polar(origin, 1.5_qp, phi), flat)]
    end function parallel_cranks
 
    !> Two cranks 4 at (0, 0) and (3, 0), two couplers 3: one between the cranks' middles, one between their tips.
-   pure function double_parallelogram(t) result(links)
-      real(qp), intent(in) :: t
+   pure function double_parallelogram(phi) result(links)
+      type(jet_t), intent(in) :: phi
       type(body_t) :: links(5)
-      type(jet_t) :: phi, flat
-      type(place_t) :: a0
 
-      phi = (30.0_qp + 8.0_qp*time_jet(t))*degree_q
-      flat = constant_jet(0.0_qp)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      links = [body('BASE', a0, flat), body('CRANK-A', a0, phi), body('CRANK-B', fixed_place(3.0_qp, 0.0_qp), phi), &
-               body('LOWER', polar(a0, 2.0_qp, phi), flat), body('UPPER', polar(a0, 4.0_qp, phi), flat)]
+      links = [base, body('CRANK-A', origin, phi), body('CRANK-B', fixed_place(3.0_qp, 0.0_qp), phi), &
+               body('LOWER', polar(origin, 2.0_qp, phi), flat), body('UPPER', polar(origin, 4.0_qp, phi), flat)]
    end function double_parallelogram
-
-   !> Crank 1, rod 3 and a carriage on the line y = 0.5; its second shoe runs in a guide parallel to it.
-   pure function two_guides(t) result(links)
-      real(qp), intent(in) :: t
-      type(body_t) :: links(4)
-      type(jet_t) :: phi, flat
-      type(place_t) :: o, pin, eye
-
-      phi = 0.5_qp + 0.75_qp*time_jet(t)
-      flat = constant_jet(0.0_qp)
-      o = fixed_place(0.0_qp, 0.0_qp)
-      pin = polar(o, 1.0_qp, phi)
-      eye = on_line(pin, 3.0_qp, fixed_place(0.0_qp, 0.5_qp), flat, 1.0_qp)
-      links = [body('BASE', o, flat), body('CRANK', o, phi), body('ROD', pin, direction(pin, eye)), &
-               body('CARRIAGE', eye, flat)]
-   end function two_guides
 
    !> Roberts: the three four-bars that lead one point P along one curve, joined in P. In complex numbers, with
    !> lambda = (P - A)/(B - A) = (3 + 4i)/6: C0 = A0 + lambda (B0 - A0); A1 = A0 + P - A, C1 = A1 + lambda (A - A0);
    !> B1 = B0 + P - B, C2 = B1 + (1 - lambda)(B - B0); then C0C1 = lambda (B - B0), C0C2 = (1 - lambda)(A - A0).
    !> Crank A0A 1.2, coupler AB 3, rocker B0B 2.4, base A0B0 3.
-   pure function cognates(t) result(links)
-      real(qp), intent(in) :: t
+   pure function cognates(phi) result(links)
+      type(jet_t), intent(in) :: phi
       type(body_t) :: links(10), coupler, left, right
-      type(jet_t) :: phi
-      type(place_t) :: a0, b0, c0, a, b, p, a1, b1
+      type(place_t) :: b0, c0, a, b, p, a1, b1
 
-      phi = (20.0_qp + 24.0_qp*time_jet(t))*degree_q
-      a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(3.0_qp, 0.0_qp)
       c0 = fixed_place(1.5_qp, 2.0_qp)
-      a = polar(a0, 1.2_qp, phi)
+      a = polar(origin, 1.2_qp, phi)
       b = corner(a, 3.0_qp, b0, 2.4_qp, 1.0_qp)
       coupler = body('COUPLER', a, direction(a, b))
       p = place_on(coupler, 1.5_qp, 2.0_qp)
-      a1 = place_t(a0%x + p%x - a%x, a0%y + p%y - a%y)
+      a1 = place_t(p%x - a%x, p%y - a%y)
       b1 = place_t(b0%x + p%x - b%x, b0%y + p%y - b%y)
       left = body('COUP-L', a1, direction(a1, p))
       right = body('COUP-R', b1, direction(b1, p))
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), coupler, &
-               body('ROCKER', b0, direction(b0, b)), body('CRANK-L', a0, direction(a0, a1)), left, &
+      links = [base, body('CRANK', origin, phi), coupler, &
+               body('ROCKER', b0, direction(b0, b)), body('CRANK-L', origin, direction(origin, a1)), left, &
                body('ROCKER-L', c0, direction(c0, place_on(left, 0.6_qp, 0.8_qp))), &
                body('CRANK-R', b0, direction(b0, b1)), right, &
                body('ROCKER-R', c0, direction(c0, place_on(right, 1.2_qp, -1.6_qp)))]
@@ -88,14 +77,13 @@ contains
    !> l = 64 41 29 / 68 47 37 / 88 73 67: x(i)^2 = s + (0, 528, 3648), y(j)^2 = (4096, 1681, 841) - s.
    !> The bar A1B1 is the base, A1 = (0, 0), B1 = (64, 0); the angle of A1B2 gives D = B1B2 = y(2) - y(1), and
    !> y(2)^2 - y(1)^2 = -2415 the rest.
-   pure function dixon(t) result(links)
-      real(qp), intent(in) :: t
+   pure function dixon(phi) result(links)
+      type(jet_t), intent(in) :: phi
       type(body_t) :: links(9)
-      type(jet_t) :: phi, d, s, x(3), y(3)
+      type(jet_t) :: d, s, x(3), y(3)
       type(place_t) :: a(3), b(3)
       integer :: i, j
 
-      phi = (-135.0_qp + 14.0_qp*sin(40.0_qp*degree_q*time_jet(t)))*degree_q
       d = sqrt(64.0_qp**2 + 41.0_qp**2 - 2.0_qp*64.0_qp*41.0_qp*cos(phi))
       y(1) = -0.5_qp*(2415.0_qp/d + d)
       s = 4096.0_qp - y(1)*y(1)
@@ -103,10 +91,10 @@ contains
       y(3) = sqrt(841.0_qp - s)
       x = [sqrt(s), -sqrt(528.0_qp + s), sqrt(3648.0_qp + s)]
       do i = 1, 3
-         a(i) = seen_from_base(x(i), constant_jet(0.0_qp), x(1), y(1))
-         b(i) = seen_from_base(constant_jet(0.0_qp), y(i), x(1), y(1))
+         a(i) = seen_from_base(x(i), flat, x(1), y(1))
+         b(i) = seen_from_base(flat, y(i), x(1), y(1))
       end do
-      links(1) = body('BASE', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp))
+      links(1) = base
       do i = 1, 3
          do j = 1, 3
             if (i + j == 2) cycle

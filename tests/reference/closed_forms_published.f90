@@ -2,31 +2,51 @@
 !> each deck the axes of all links are parallel. Points are written out again by hand, seen from the reference points of
 !> their links.
 module closed_forms_published
-   use quad_jet, only: qp, jet_t, constant_jet, time_jet, operator(+), operator(-), operator(*), sin
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, direction, third_corner
+   use quad_jet
+   use closed_forms_dyads
    implicit none
    private
-   public :: ten_plates, teaching_four_bar, watt_i
+   public :: published
+
+   !> The ground of these decks.
+   type(body_t), parameter :: frame = body_t('FRAME', flat, flat, flat)
 
 contains
+
+   !> The links of the deck `name` at `time`, in its set number `set`; none for another deck.
+   pure function published(name, set, time) result(links)
+      character(*), intent(in) :: name
+      integer, intent(in) :: set
+      type(jet_t), intent(in) :: time
+      type(body_t), allocatable :: links(:)
+
+      select case (name)
+      case ('ten_plates'); links = ten_plates(time)
+      case ('teaching_four_bar')
+         ! The deck gives the speed of the crank as a double.
+         links = teaching_four_bar(1.0796606752837_qp*time)
+      case ('watt_i')
+         ! Ten turns a minute, in the second set back.
+         links = watt_i(merge(1.0471975511966_qp, -1.0471975511966_qp, set == 1)*time)
+      case default; allocate (links(0))
+      end select
+   end function published
 
    !> Ten plates. The cylinders A-D (C4, C3) and B-H (C6, C5), whose lengths are driven, have the directions 1.249... and
    !> 1.325... in their links' axes. D lies to the right of A E, H to that of B G; then come two dyads, where I lies
    !> to the right of F J, N to the left of K L.
-   pure function ten_plates(t) result(links)
-      real(qp), intent(in) :: t
+   pure function ten_plates(time) result(links)
+      type(jet_t), intent(in) :: time
       type(body_t) :: links(11), c1, c2, c7, c8
       real(qp), parameter :: along_ad = 1.2490457723983_qp, along_bh = 1.325817663668_qp
-      type(jet_t) :: time, ad, bh
-      type(place_t) :: a, b, e, d, g, h, f, j, i, k, l, n
+      type(jet_t) :: ad, bh
+      type(place_t) :: b, e, d, g, h, f, j, i, k, l, n
 
-      time = time_jet(t)
       ad = 0.58245553203368_qp + 0.08_qp*sin(3.1415926535898_qp*time + 0.7853981633974_qp)
       bh = 0.78462112512353_qp + 0.1_qp*sin(0.7853981633974_qp*time - 1.0471975511966_qp)
-      a = fixed_place(0.0_qp, 0.0_qp)
       b = fixed_place(0.3_qp, 0.0_qp)
       e = fixed_place(-0.1_qp, 0.7_qp)
-      d = third_corner(a, e, ad*ad, squared(0.3_qp, -0.1_qp), -1.0_qp)
+      d = third_corner(origin, e, ad*ad, squared(0.3_qp, -0.1_qp), -1.0_qp)
       c1 = link_at('C1', e, -0.1_qp, -0.15_qp, turned(e, d, 0.3_qp, -0.1_qp))
       g = place_on(c1, 0.0_qp, 0.35_qp)
       h = third_corner(b, g, bh*bh, squared(0.5_qp, -0.4_qp), -1.0_qp)
@@ -39,42 +59,38 @@ contains
       k = place_on(c8, 0.15_qp, 0.35_qp)
       l = place_on(c7, 0.6_qp, -0.6_qp)
       n = third_corner(k, l, squared(0.5_qp, -0.6_qp), squared(0.3_qp, 0.5_qp), 1.0_qp)
-      links = [body('FRAME', a, constant_jet(0.0_qp)), c1, c2, &
-               link_at('C3', d, 0.05_qp, 0.15_qp, direction(a, d) - along_ad), &
-               link_at('C4', a, -0.05_qp, -0.15_qp, direction(a, d) - along_ad), &
+      links = [frame, c1, c2, &
+               link_at('C3', d, 0.05_qp, 0.15_qp, direction(origin, d) - along_ad), &
+               link_at('C4', origin, -0.05_qp, -0.15_qp, direction(origin, d) - along_ad), &
                link_at('C5', h, 0.05_qp, 0.2_qp, direction(b, h) - along_bh), &
                link_at('C6', b, -0.05_qp, -0.2_qp, direction(b, h) - along_bh), c7, c8, &
                link_at('C9', k, -0.25_qp, 0.3_qp, turned(k, n, 0.5_qp, -0.6_qp)), &
                link_at('C10', l, -0.2_qp, -0.25_qp, turned(l, n, 0.3_qp, 0.5_qp))]
    end function ten_plates
 
-   !> Teaching four-bar: crank 1.52 about (0, 0), the rocker about (4.572, 0); C lies to the left of B D. The deck gives
-   !> the speed of the crank as a double.
-   pure function teaching_four_bar(t) result(links)
-      real(qp), intent(in) :: t
+   !> Teaching four-bar: crank 1.52 about (0, 0) at the angle `phi`, the rocker about (4.572, 0); C lies to the left of B D.
+   pure function teaching_four_bar(phi) result(links)
+      type(jet_t), intent(in) :: phi
       type(body_t) :: links(4), crank
-      type(place_t) :: a, b, c, d
+      type(place_t) :: b, c, d
 
-      a = fixed_place(0.0_qp, 0.0_qp)
       d = fixed_place(4.572_qp, 0.0_qp)
-      crank = body('ABH', a, 1.0796606752837_qp*time_jet(t))
+      crank = body('ABH', origin, phi)
       b = place_on(crank, 1.52_qp, 0.0_qp)
       c = third_corner(b, d, squared(2.71_qp, 3.029_qp), squared(-0.342_qp, 3.029_qp), 1.0_qp)
-      links = [body('FRAME', a, constant_jet(0.0_qp)), crank, body('BCFG', b, turned(b, c, 2.71_qp, 3.029_qp)), &
+      links = [frame, crank, body('BCFG', b, turned(b, c, 2.71_qp, 3.029_qp)), &
                body('CDEI', d, turned(d, c, -0.342_qp, 3.029_qp))]
    end function teaching_four_bar
 
-   !> Watt's first six-bar: crank AB about (-3.74, -2.41), CFG about (7.32, -3.51); C lies to the left of B G, E to
-   !> that of D F. Ten turns a minute, in the second set back.
-   pure function watt_i(set, t) result(links)
-      integer, intent(in) :: set
-      real(qp), intent(in) :: t
+   !> Watt's first six-bar: crank AB about (-3.74, -2.41) at the angle `phi`, CFG about (7.32, -3.51); C lies to the left of
+   !> B G, E to that of D F.
+   pure function watt_i(phi) result(links)
+      type(jet_t), intent(in) :: phi
       type(body_t) :: links(6), crank, bcd, cfg
-      type(place_t) :: a, b, c, d, e, f, g
+      type(place_t) :: b, c, d, e, f, g
 
-      a = fixed_place(-3.74_qp, -2.41_qp)
       g = fixed_place(7.32_qp, -3.51_qp)
-      crank = body('AB', a, merge(1.0471975511966_qp, -1.0471975511966_qp, set == 1)*time_jet(t))
+      crank = body('AB', fixed_place(-3.74_qp, -2.41_qp), phi)
       b = place_on(crank, 1.02_qp, 3.32_qp)
       c = third_corner(b, g, squared(4.3_qp, -0.48_qp), squared(-5.74_qp, 3.94_qp), 1.0_qp)
       bcd = body('BCD', b, turned(b, c, 4.3_qp, -0.48_qp))
@@ -82,7 +98,7 @@ contains
       d = place_on(bcd, 2.48_qp, 3.1_qp)
       f = place_on(cfg, 0.82_qp, 6.86_qp)
       e = third_corner(d, f, squared(5.32_qp, 1.3_qp), squared(3.06_qp, -1.96_qp), 1.0_qp)
-      links = [body('FRAME', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp)), crank, bcd, &
+      links = [frame, crank, bcd, &
                body('DE', d, turned(d, e, 5.32_qp, 1.3_qp)), body('EF', e, turned(e, f, 3.06_qp, -1.96_qp)), cfg]
    end function watt_i
 

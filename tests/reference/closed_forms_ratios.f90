@@ -2,22 +2,20 @@
 !> drive can move alone. The lengths and laws are those of the decks in input/, written out again by hand so that a deck
 !> read wrongly shows up as a difference.
 module closed_forms_ratios
-   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, atan2
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, third_corner
+   use quad_jet
+   use closed_forms_dyads
    implicit none
    private
    public :: ratio_laws, by_drives
 
 contains
 
-   !> The values of the drives of the deck `name` at the time `t`; none for another deck.
-   pure function ratio_laws(name, t) result(f)
+   !> The values of the drives of the deck `name` at `time`; none for another deck.
+   pure function ratio_laws(name, time) result(f)
       character(*), intent(in) :: name
-      real(qp), intent(in) :: t
+      type(jet_t), intent(in) :: time
       type(jet_t), allocatable :: f(:)
-      type(jet_t) :: time
 
-      time = time_jet(t)
       select case (name)
       case ('boom')
          f = [2.0_qp + 0.5_qp*time]
@@ -35,35 +33,30 @@ contains
       character(*), intent(in) :: name
       type(jet_t), intent(in) :: f(:)
       type(body_t), allocatable :: links(:)
-      type(jet_t) :: flat
-      type(place_t) :: o
 
-      flat = constant_jet(0.0_qp)
-      o = fixed_place(0.0_qp, 0.0_qp)
       select case (name)
       case ('boom')
-         links = [body('BASE', o, flat), boom(o, f(1))]
+         links = [base, boom(f(1))]
       case ('leverage')
          ! The wheel is 500 from O, at the height of the drive and to the right.
-         links = [body('FRAME', o, flat), body('ARM', o, atan2(f(1), sqrt(500.0_qp**2 - f(1)*f(1))))]
+         links = [body('FRAME', origin, flat), body('ARM', origin, atan2(f(1), sqrt(500.0_qp**2 - f(1)*f(1))))]
       case ('jacobian')
-         links = [body('BASE', o, flat), body('UPPER', o, f(1)), body('FORE', polar(o, 2.0_qp, f(1)), f(1) + f(2))]
+         links = [base, body('UPPER', origin, f(1)), body('FORE', polar(origin, 2.0_qp, f(1)), f(1) + f(2))]
       case default
          allocate (links(0))
       end select
    end function by_drives
 
    !> Boom, barrel and rod: B is a corner of the triangle of O, B0 = (2, -1) and B, whose sides are OB and the `ram`.
-   pure function boom(o, ram) result(links)
-      type(place_t), intent(in) :: o
+   pure function boom(ram) result(links)
       type(jet_t), intent(in) :: ram
       type(body_t) :: links(3)
       real(qp), parameter :: b_x = 1.5_qp, b_y = 1.0_qp
       type(place_t) :: foot, b
 
       foot = fixed_place(2.0_qp, -1.0_qp)
-      b = third_corner(o, foot, constant_jet(b_x**2 + b_y**2), ram*ram, 1.0_qp)
-      links = [body('BOOM', o, direction(o, b) - atan2(b_y, b_x)), body('BARREL', foot, direction(foot, b)), &
+      b = third_corner(origin, foot, constant_jet(b_x**2 + b_y**2), ram*ram, 1.0_qp)
+      links = [body('BOOM', origin, direction(origin, b) - atan2(b_y, b_x)), body('BARREL', foot, direction(foot, b)), &
                body('ROD', b, direction(foot, b))]
    end function boom
 end module closed_forms_ratios

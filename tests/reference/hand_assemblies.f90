@@ -1,9 +1,10 @@
 !> Tests. The answers to cards ASSEMBLY and CIRCUITS as the listing must print them, from closed forms in real128.
 module hand_assemblies
    use mechanism, only: mechanism_t
-   use quad_jet, only: qp, pi_q, degree_q
+   use quad_jet, only: qp, pi_q, degree_q, time_jet
    use closed_forms_dyads, only: body_t
-   use closed_forms_assemblies, only: platform_assemblies, platform, triple_rocker, crank_limit
+   use closed_forms_assemblies, only: platform_assemblies, platform, crank_limit
+   use closed_forms_four_bars, only: triple_rocker
    use hand_scales, only: hand_scales_t, length_by_hand
    use hand_tables, only: instant_text
    use text_output, only: output_t, put
@@ -67,7 +68,7 @@ contains
             one%links = platform(positions(:, i))
             one%determinant = platform_determinant(one%links)
          else
-            one%links = triple_rocker(0.0_qp, real(3 - 2*i, qp))
+            one%links = triple_rocker(time_jet(0.0_qp), real(3 - 2*i, qp))
             one%determinant = sin(one%links(3)%phi%v - one%links(4)%phi%v)
          end if
          one%distance = distance_from(m, one%links)

@@ -5,7 +5,7 @@ module hand_estimates
    use, intrinsic :: iso_fortran_env, only: int64, real64
    use mechanism, only: mechanism_t, pair_prismatic
    use quad_jet, only: qp, pi_q
-   use closed_forms_hard, only: pushed_slider
+   use closed_forms_sliders, only: pushed_slider
    use hand_rows, only: hand_row_t, row_by_hand
    use hand_scales, only: length_by_hand
    implicit none

@@ -1,7 +1,7 @@
 !> Tests. The links of a deck at any time by its closed form, angles without leaps; and with one drive that moves alone.
 module hand_links
    use mechanism, only: mechanism_t
-   use quad_jet, only: qp, pi_q, jet_t, constant_jet
+   use quad_jet, only: qp, pi_q, jet_t, constant_jet, time_jet
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
    use closed_forms_ratios, only: ratio_laws, by_drives
@@ -34,7 +34,7 @@ contains
       type(jet_t), allocatable :: f(:)
       character(:), allocatable :: fault
 
-      f = ratio_laws(name, t)
+      f = ratio_laws(name, time_jet(t))
       if (size(f) < drive) error stop 'NO CLOSED FORM OF RATIOS FOR THE DECK'
       f = constant_jet(f%v)
       f(drive)%d = 1.0_qp

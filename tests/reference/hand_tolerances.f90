@@ -4,8 +4,8 @@
 module hand_tolerances
    use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic, drive_slide
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos, atan2
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, corner
-   use closed_forms_linkages, only: drawn_link
+   use closed_forms_dyads, only: place_t, body_t, flat, origin, base, fixed_place, body, place_on, polar, direction, &
+      third_corner, corner, drawn_link
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: pair_slots
@@ -96,30 +96,28 @@ contains
       real(qp), intent(in) :: t, p(:)
       type(body_t), allocatable :: links(:)
       type(place_t) :: a0, b0, a, b
-      type(body_t) :: base
+      type(body_t) :: turned_base
       type(jet_t) :: phi, s, along, across
 
       if (set == 1) then
          a0 = fixed_place(p(1), 0.0_qp)
-         base = body('BASE', a0, constant_jet(p(2)*degree_q))
-         b0 = place_on(base, p(3), p(4))
+         turned_base = body('BASE', a0, constant_jet(p(2)*degree_q))
+         b0 = place_on(turned_base, p(3), p(4))
          phi = (p(10) + p(11)*time_jet(t))*degree_q
          a = polar(a0, p(5), phi)
-         b = third_corner(a, b0, constant_jet(p(6)**2), constant_jet(p(9)**2), 1.0_qp)
-         links = [base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+         b = corner(a, p(6), b0, p(9), 1.0_qp)
+         links = [turned_base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
       else if (set == 3) then
          links = landing_gear(t, p)
       else
          ! The pin B is on the guide, (0 - B) . n = h, at the distance of the rod from A.
-         a0 = fixed_place(0.0_qp, 0.0_qp)
          phi = p(6)*time_jet(t)
-         a = polar(a0, p(1), phi)
+         a = polar(origin, p(1), phi)
          along = p(1)*cos(phi - p(3))
          across = p(1)*sin(phi - p(3)) + p(4)
          s = along + sqrt(p(2)**2 - across*across)
          b = place_t(s*cos(p(3)) + p(4)*sin(p(3)), s*sin(p(3)) - p(4)*cos(p(3)))
-         links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('ROD', a, direction(a, b)), &
-            body('PISTON', b, constant_jet(p(5)))]
+         links = [base, body('CRANK', origin, phi), body('ROD', a, direction(a, b)), body('PISTON', b, constant_jet(p(5)))]
       end if
    end function links_with
 
@@ -131,21 +129,19 @@ contains
       real(qp), intent(in) :: t, p(6)
       type(body_t) :: links(6), leg
       real(qp), parameter :: c0(2) = [-450.0_qp, -250.0_qp], e0(2) = [0.0_qp, -400.0_qp], a0(2) = [1000.0_qp, 0.0_qp], &
-         d0(2) = [0.0_qp, -995.0_qp], k0(2) = [580.0_qp, -560.0_qp], origin(2) = 0.0_qp
-      type(place_t) :: o, a, c, d, e, knee
+         d0(2) = [0.0_qp, -995.0_qp], k0(2) = [580.0_qp, -560.0_qp], drawn(2) = 0.0_qp
+      type(place_t) :: a, c, d, e, knee
       type(jet_t) :: ram
 
-      o = fixed_place(0.0_qp, 0.0_qp)
       a = fixed_place(a0(1), a0(2))
       c = fixed_place(c0(1) + p(1), c0(2) + p(2))
       ram = norm2(e0 - c0) + 50.0_qp*time_jet(t)
-      e = third_corner(o, c, constant_jet(sum((e0 + p(3:4))**2)), ram*ram, 1.0_qp)
-      leg = drawn_link('LEG', o, e, origin, e0 + p(3:4), origin)
+      e = third_corner(origin, c, constant_jet(sum((e0 + p(3:4))**2)), ram*ram, 1.0_qp)
+      leg = drawn_link('LEG', origin, e, drawn, e0 + p(3:4), drawn)
       d = place_on(leg, d0(1), d0(2))
       knee = corner(d, p(6), a, p(5), -1.0_qp)
-      links = [body('BASE', o, constant_jet(0.0_qp)), leg, drawn_link('BARREL', c, e, c0, e0, origin), &
-         drawn_link('ROD', e, c, e0, c0, origin), drawn_link('UPPER', a, knee, a0, k0, origin), &
-         drawn_link('LOWER', d, knee, d0, k0, origin)]
+      links = [base, leg, drawn_link('BARREL', c, e, c0, e0, drawn), drawn_link('ROD', e, c, e0, c0, drawn), &
+         drawn_link('UPPER', a, knee, a0, k0, drawn), drawn_link('LOWER', d, knee, d0, k0, drawn)]
    end function landing_gear
 
    !> The numbers (3, 0:2) of the row of request number `i` of `m` at the time `t`, with the numbers `p`: of deck 1 the

@@ -9,7 +9,7 @@ program print_expected
    use motion, only: diagnostic_t, diagnostic_stroke
    use structure, only: structure_report_t
    use continuation, only: certificate_counts_t
-   use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
+   use hand_groups, only: count_by_hand, groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
    use independent, only: set_t, divide
@@ -27,7 +27,7 @@ program print_expected
    use hand_tables, only: above_t, put_tables
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
-   use closed_forms, only: closed_form, hand_count
+   use closed_forms, only: closed_form
    use hand_links, only: move_links_to
    use hand_columns, only: put_columns_by_hand
    use hand_tolerances, only: put_shares_by_hand
@@ -68,7 +68,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(structure_report_t) :: structure_report
 
-      structure_report = hand_count(name)
+      structure_report = count_by_hand(name)
       structure_report%groups = groups_by_hand(name, m)
       call listing_head(o, m, structure_report)
    end subroutine print_head
