@@ -2,7 +2,7 @@
 !> row is whole, and positions, velocities and accelerations satisfy the closure equations and the drives in real128.
 module csv_closure
    use kinds, only: wp
-   use quad_jet, only: qp, pi_q, jet_t, operator(-)
+   use quad_jet, only: qp, jet_t, wrap_angle, operator(-)
    use mechanism, only: mechanism_t, instant_count, request_point, request_pair, pair_prismatic
    use csv_rows, only: rows_t, read_instant, csv_head
    use csv_cells, only: whole_text, blame
@@ -145,8 +145,7 @@ contains
          if (m%closing > 0.0_wp) allowed = max(allowed, shorter_row*min(m%closing*rates_of_closing, held_rates))
          ! Two guides that ask for angles a whole turn apart ask for the same.
          do k = 1, size(m%pairs)
-            if (m%pairs(k)%kind == pair_prismatic) &
-               share(0, 2*k) = abs(r(2*k)%v - 2.0_qp*pi_q*anint(r(2*k)%v/(2.0_qp*pi_q)))
+            if (m%pairs(k)%kind == pair_prismatic) share(0, 2*k) = abs(wrap_angle(r(2*k)%v))
          end do
          ! Two drives that ask for accelerations next to none are told apart by what their rates are worth.
          sizes(2, :) = max(sizes(2, :), sizes(1, :)**2/(sizes(0, :) + min_size))

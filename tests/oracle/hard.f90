@@ -8,12 +8,13 @@ program hard
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use plane_vectors, only: pi, degree
-   use quad_jet, only: qp, pi_q
+   use quad_jet, only: qp
    use mechanism, only: method_matrix, method_dense
    use motion, only: motion_t, new_motion, flag_none, flag_stroke
    use scales, only: characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
-   use jet_closure, only: body_jet_t
+   use closed_forms_dyads, only: body_t
+   use motion_errors, only: exactly_away
    use hard_condition, only: condition_t, measure
    use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, exact_links
    implicit none
@@ -167,7 +168,7 @@ contains
 
    !> An angle goes on from where it was: in short steps none is brought back by whole turns.
    subroutine look_at_turns(exact, interval, turned, tally)
-      type(body_jet_t), intent(in) :: exact(:)
+      type(body_t), intent(in) :: exact(:)
       real(wp), intent(in) :: interval, turned(:)
       type(certificate_counts_t), intent(inout) :: tally
 
@@ -179,7 +180,7 @@ contains
       real(wp), intent(in) :: t
       type(motion_t), intent(in) :: q
       type(certificate_counts_t), intent(inout) :: tally
-      type(body_jet_t) :: exact(size(s%m%links))
+      type(body_t) :: exact(size(s%m%links))
       real(qp) :: allowed(3, size(s%m%links), 0:2)
       logical :: exists
 
@@ -215,7 +216,7 @@ contains
    !> (3, links, 0:2) what is divided by; `exists`: the position is not singular.
    subroutine find_allowed(s, exact, t, allowed, exists)
       type(scene_t), intent(in) :: s
-      type(body_jet_t), intent(in) :: exact(:)
+      type(body_t), intent(in) :: exact(:)
       real(wp), intent(in) :: t
       real(qp), intent(out) :: allowed(3, size(exact), 0:2)
       logical, intent(out) :: exists
@@ -233,7 +234,7 @@ contains
    !> rounding of the largest numbers that its equations hold.
    subroutine allow_for_constants(length, exact, allowed)
       real(wp), intent(in) :: length
-      type(body_jet_t), intent(in) :: exact(:)
+      type(body_t), intent(in) :: exact(:)
       real(qp), intent(inout) :: allowed(3, size(exact), 0:2)
       real(qp) :: size_of(2, 0:2)
       integer :: k
@@ -252,7 +253,7 @@ contains
 
    !> The largest of all velocities.
    pure real(qp) function fastest(b)
-      type(body_jet_t), intent(in) :: b(:)
+      type(body_t), intent(in) :: b(:)
 
       fastest = max(maxval(abs(b%x%d)), maxval(abs(b%y%d)), maxval(abs(b%phi%d)))
    end function fastest
@@ -260,22 +261,17 @@ contains
    !> The largest errors (0:2) in units of eps `allowed`; angles to the next whole turn.
    function ratios(q, exact, allowed) result(worst)
       type(motion_t), intent(in) :: q
-      type(body_jet_t), intent(in) :: exact(:)
+      type(body_t), intent(in) :: exact(:)
       real(qp), intent(in) :: allowed(3, size(exact), 0:2)
       real(qp) :: worst(0:2), off(3, 0:2)
       integer :: i, k
 
       worst = 0.0_qp
       do i = 1, size(exact)
-         associate (b => exact(i))
-            off(:, 0) = real(q%position(:, i), qp) + [real(q%origin, qp), 0.0_qp] - [b%x%v, b%y%v, b%phi%v]
-            off(3, 0) = off(3, 0) - 2.0_qp*pi_q*anint(off(3, 0)/(2.0_qp*pi_q))
-            off(:, 1) = q%velocity(:, i) - [b%x%d, b%y%d, b%phi%d]
-            off(:, 2) = q%acceleration(:, i) - [b%x%dd, b%y%dd, b%phi%dd]
-         end associate
+         off = exactly_away(q, i, exact(i))
          do k = 0, 2
-            if (.not. any(abs(off(:, k)) > 0.0_qp)) cycle
-            worst(k) = max(worst(k), maxval(abs(off(:, k))/(epsilon(1.0_wp)*max(allowed(:, i, k), tiny(1.0_qp)))))
+            if (all(off(:, k) <= 0.0_qp)) cycle
+            worst(k) = max(worst(k), maxval(off(:, k)/(epsilon(1.0_wp)*max(allowed(:, i, k), tiny(1.0_qp)))))
          end do
       end do
    end function ratios

@@ -6,10 +6,12 @@
 !> The derivatives are differences in real128: one number is changed by `step` of itself, and Newton's method with the
 !> matrix of the position as it was leads from there to the new one, its velocities and its accelerations.
 module hard_condition
-   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*)
+   use quad_jet, only: qp, jet_t, operator(+), operator(-), operator(*)
+   use quad_lapack, only: getrf, getrs
    use mechanism, only: mechanism_t
    use scales, only: characteristic_length
-   use jet_closure, only: body_jet_t, numbers_of, set_grounds, closure_jets
+   use closed_forms_dyads, only: motion_of
+   use jet_closure, only: body_jet_t, numbers_of, set_grounds, closure_jets, closure_slopes
    use jet_drives, only: drive_jets, drive_changes
    implicit none
    private
@@ -86,7 +88,7 @@ contains
       end do
    end subroutine add_numbers
 
-   !> The same for each number of the drives.
+   !> Adds what each number of the drives does, the position being `b`.
    subroutine add_drives(m, d, f, a, b, t, sums)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: d(:), t
@@ -118,9 +120,7 @@ contains
       integer :: i
 
       do i = 1, size(b)
-         y(:, i, 0) = [b(i)%x%v, b(i)%y%v, b(i)%phi%v]
-         y(:, i, 1) = [b(i)%x%d, b(i)%y%d, b(i)%phi%d]
-         y(:, i, 2) = [b(i)%x%dd, b(i)%y%dd, b(i)%phi%dd]
+         y(:, i, :) = motion_of(b(i))
       end do
    end function coordinates
 
@@ -139,9 +139,7 @@ contains
       call set_grounds(m, d, b)
       do k = 1, steps
          r = closure_jets(m, d, b, f)
-         x(:, 1) = solution(a, r%v)
-         x(:, 2) = solution(a, r%d)
-         x(:, 3) = solution(a, r%dd)
+         x = solution(a, reshape([r%v, r%d, r%dd], [size(r), 3]))
          n = 0
          do i = 1, size(b)
             if (m%links(i)%ground) cycle
@@ -153,90 +151,43 @@ contains
       end do
    end subroutine solve
 
-   !> The Jacobian at the position `b`, column by column from unit velocities, factored.
+   !> The Jacobian at the position `b`, factored.
    function matrix_at(m, d, b) result(a)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: d(:)
       type(body_jet_t), intent(in) :: b(:)
       type(matrix_t) :: a
-      type(body_jet_t) :: still(size(b)), moving(size(b))
-      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), none(size(m%drives))
-      integer :: link, i, n
+      real(qp), allocatable :: largest(:)
+      integer :: k, n, info
 
       a%body_vector = characteristic_length(m)
-      still%x = constant_jet(b%x%v)
-      still%y = constant_jet(b%y%v)
-      still%phi = constant_jet(b%phi%v)
-      allocate (a%rows(size(r), 3*count(.not. m%links%ground)))
-      n = 0
-      do link = 1, size(b)
-         if (m%links(link)%ground) cycle
-         do i = 1, 3
-            moving = still
-            if (i == 1) moving(link)%x%d = a%body_vector
-            if (i == 2) moving(link)%y%d = a%body_vector
-            if (i == 3) moving(link)%phi%d = 1.0_qp
-            r = closure_jets(m, d, moving, none)
-            n = n + 1
-            a%rows(:, n) = r%d
-         end do
-      end do
+      a%rows = closure_slopes(m, d, b)
+      a%rows(:, 1::3) = a%body_vector*a%rows(:, 1::3)
+      a%rows(:, 2::3) = a%body_vector*a%rows(:, 2::3)
+      n = size(a%rows, 2)
       a%row_size = maxval(abs(a%rows), dim=2)
       a%rows = a%rows/spread(a%row_size, 2, n)
       a%factors = a%rows
       if (size(a%rows, 1) > n) a%factors = matmul(transpose(a%rows), a%rows)
-      call factorize(a)
+      largest = maxval(abs(a%factors), dim=1)
+      allocate (a%pivot(n))
+      call getrf(n, n, a%factors, n, a%pivot, info)
+      a%regular = all([(abs(a%factors(k, k)) > 1.0e-26_qp*largest(k), k=1, n)])
    end function matrix_at
 
-   !> Gauss, with the largest pivot of each column.
-   subroutine factorize(a)
-      type(matrix_t), intent(inout) :: a
-      real(qp) :: row(size(a%factors, 2)), largest(size(a%factors, 2))
-      integer :: k, i, n
-
-      n = size(a%factors, 2)
-      a%pivot = [(k, k=1, n)]
-      largest = maxval(abs(a%factors), dim=1)
-      do k = 1, n
-         i = k - 1 + maxloc(abs(a%factors(k:, k)), dim=1)
-         row = a%factors(i, :)
-         a%factors(i, :) = a%factors(k, :)
-         a%factors(k, :) = row
-         a%pivot(k) = i
-         a%regular = abs(a%factors(k, k)) > 1.0e-26_qp*largest(k)
-         if (.not. a%regular) return
-         a%factors(k + 1:, k) = a%factors(k + 1:, k)/a%factors(k, k)
-         do i = k + 1, n
-            if (abs(a%factors(k, i)) > 0.0_qp) &
-               a%factors(k + 1:, i) = a%factors(k + 1:, i) - a%factors(k, i)*a%factors(k + 1:, k)
-         end do
-      end do
-   end subroutine factorize
-
-   !> The solution of rows x = `right`, or the one with the least squares.
+   !> The solutions of rows x = `right` (rows, any number), or those with the least squares.
    function solution(a, right) result(x)
       type(matrix_t), intent(in) :: a
-      real(qp), intent(in) :: right(:)
-      real(qp) :: x(size(a%factors, 2)), one
-      integer :: k, n
+      real(qp), intent(in) :: right(:, :)
+      real(qp) :: x(size(a%factors, 2), size(right, 2)), scaled(size(right, 1), size(right, 2))
+      integer :: info
 
-      n = size(x)
-      if (size(right) > n) then
-         x = matmul(right/a%row_size, a%rows)
+      scaled = right/spread(a%row_size, 2, size(right, 2))
+      if (size(right, 1) > size(x, 1)) then
+         x = matmul(transpose(a%rows), scaled)
       else
-         x = right/a%row_size
+         x = scaled
       end if
-      do k = 1, n
-         one = x(a%pivot(k))
-         x(a%pivot(k)) = x(k)
-         x(k) = one
-      end do
-      do k = 1, n
-         if (abs(x(k)) > 0.0_qp) x(k + 1:) = x(k + 1:) - x(k)*a%factors(k + 1:, k)
-      end do
-      do k = n, 1, -1
-         x(k) = x(k)/a%factors(k, k)
-         if (abs(x(k)) > 0.0_qp) x(:k - 1) = x(:k - 1) - x(k)*a%factors(:k - 1, k)
-      end do
+      call getrs('N', size(x, 1), size(x, 2), a%factors, size(x, 1), a%pivot, x, size(x, 1), info)
    end function solution
 end module hard_condition

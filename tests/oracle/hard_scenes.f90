@@ -4,13 +4,12 @@ module hard_scenes
    use kinds, only: wp
    use plane_vectors, only: degree
    use quad_jet, only: qp, jet_t, operator(+)
-   use failures, only: failure_t
    use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count
-   use deck, only: read_deck
-   use jet_closure, only: body_jet_t
+   use deck_tally, only: deck_name, sets_of
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, flat
    use closed_forms, only: closed_form
+   use hand_links, only: sort_links
    use sample_mechanisms, only: four_bar, crank_slider, magnified
    implicit none
    private
@@ -36,16 +35,13 @@ contains
       integer, intent(in) :: most
       type(scene_t), allocatable :: list(:)
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
-      character(:), allocatable :: report
       integer :: i, k, every
 
-      call read_deck(path, sets, report, failure)
-      if (allocated(failure)) error stop 'A DECK IS REFUSED'
+      sets = sets_of(path)
       allocate (list(size(sets)))
       do i = 1, size(sets)
          associate (s => list(i))
-            s%deck = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))
+            s%deck = deck_name(path)
             s%set = i
             s%name = s%deck//' '//achar(iachar('0') + i)
             s%m = sets(i)
@@ -123,9 +119,9 @@ contains
    function exact_links(s, t) result(b)
       type(scene_t), intent(in) :: s
       real(wp), intent(in) :: t
-      type(body_jet_t) :: b(size(s%m%links))
+      type(body_t) :: b(size(s%m%links))
       type(body_t), allocatable :: form(:)
-      integer :: i, k
+      character(:), allocatable :: fault
 
       select case (s%form)
       case (by_deck)
@@ -135,12 +131,10 @@ contains
       case default
          form = slider_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
       end select
-      if (size(form) /= size(b)) error stop 'A SCENE WITHOUT A CLOSED FORM'
-      do i = 1, size(form)
-         k = findloc(s%m%links%name == form(i)%name, .true., dim=1)
-         if (k == 0) error stop 'A LINK OF A CLOSED FORM IS NOT IN THE DECK'
-         b(k) = body_jet_t(form(i)%x + real(s%far(1), qp), form(i)%y + real(s%far(2), qp), form(i)%phi)
-      end do
+      call sort_links(s%m, form, b, fault)
+      if (fault /= '') error stop 'A SCENE WITHOUT A CLOSED FORM'
+      b%x = b%x + real(s%far(1), qp)
+      b%y = b%y + real(s%far(2), qp)
    end function exact_links
 
    !> The links of the four-bar `m` with its driven link at `phi`.
@@ -177,7 +171,7 @@ contains
    !> The deck's rough positions: the exact ones at the first instant, but for a thousandth.
    subroutine place_roughly(s)
       type(scene_t), intent(inout) :: s
-      type(body_jet_t) :: b(size(s%m%links))
+      type(body_t) :: b(size(s%m%links))
       integer :: i
 
       b = exact_links(s, s%at(1))

@@ -2,17 +2,13 @@
 !> is given. Two of every pair, (7), (8) or (9), (10), in the program's order, then one of every drive. All numbers of
 !> the deck are real128, so that each can be changed by less than a double can tell.
 module jet_closure
-   use kinds, only: wp
    use quad_jet, only: qp, jet_t, constant_jet, sin, cos, operator(+), operator(-), operator(*)
+   use closed_forms_dyads, only: body_jet_t => body_t
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_relangle, drive_slide
    implicit none
    private
    public :: body_jet_t, numbers_of, set_grounds, closure_jets, place_jet, slide_jet
-   public :: closure, closure_slopes, closure_second, positions
-
-   type :: body_jet_t
-      type(jet_t) :: x, y, phi
-   end type body_jet_t
+   public :: closure, closure_slopes, at_rest
 
 contains
 
@@ -152,62 +148,44 @@ contains
       real(qp) :: r(2*size(m%pairs) + size(m%drives))
       type(jet_t) :: jets(size(r))
 
-      jets = closure_jets(m, numbers_of(m), moving(q, 0.0_qp*q, 0.0_qp*q), constant_jet(f))
+      jets = closure_jets(m, numbers_of(m), at_rest(q), constant_jet(f))
       r = jets%v
    end function closure
 
-   !> Derivatives of the residuals by x, y, phi of every moving link, in order.
-   function closure_slopes(m, q) result(slopes)
+   !> Derivatives (equations, unknowns) of the residuals by x, y, phi of every moving link, in order, where the links are at `b`:
+   !> column by column from unit velocities.
+   function closure_slopes(m, d, b) result(slopes)
       type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: q(:, :)
-      real(qp) :: slopes(2*size(m%pairs) + size(m%drives), 3*count(.not. m%links%ground)), v(3, size(q, 2))
-      type(jet_t) :: jets(size(slopes, 1)), held(size(m%drives))
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(in) :: b(:)
+      real(qp) :: slopes(2*size(m%pairs) + size(m%drives), 3*count(.not. m%links%ground))
+      type(body_jet_t) :: still(size(b)), moving(size(b))
+      type(jet_t) :: r(size(slopes, 1)), held(size(m%drives))
       integer :: link, i, column
 
+      still = at_rest(reshape([b%x%v, b%y%v, b%phi%v], [3, size(b)], order=[2, 1]))
       column = 0
-      do link = 1, size(m%links)
+      do link = 1, size(b)
          if (m%links(link)%ground) cycle
          do i = 1, 3
+            moving = still
+            if (i == 1) moving(link)%x%d = 1.0_qp
+            if (i == 2) moving(link)%y%d = 1.0_qp
+            if (i == 3) moving(link)%phi%d = 1.0_qp
+            r = closure_jets(m, d, moving, held)
             column = column + 1
-            v = 0.0_qp
-            v(i, link) = 1.0_qp
-            jets = closure_jets(m, numbers_of(m), moving(q, v, 0.0_qp*v), held)
-            slopes(:, column) = jets%d
+            slopes(:, column) = r%d
          end do
       end do
    end function closure_slopes
 
-   !> Second derivative by time of the residuals for the motion q, v, a (3, links), the drives standing still.
-   function closure_second(m, q, v, a) result(second)
-      type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: q(:, :), v(:, :), a(:, :)
-      real(qp) :: second(2*size(m%pairs) + size(m%drives))
-      type(jet_t) :: jets(size(second)), held(size(m%drives))
-
-      jets = closure_jets(m, numbers_of(m), moving(q, v, a), held)
-      second = jets%dd
-   end function closure_second
-
-   pure function moving(q, v, a) result(b)
-      real(qp), intent(in) :: q(:, :), v(:, :), a(:, :)
+   !> The links at the positions `q` (3, links), at rest.
+   pure function at_rest(q) result(b)
+      real(qp), intent(in) :: q(:, :)
       type(body_jet_t) :: b(size(q, 2))
-      integer :: i
 
-      do i = 1, size(b)
-         b(i)%x = jet_t(q(1, i), v(1, i), a(1, i))
-         b(i)%y = jet_t(q(2, i), v(2, i), a(2, i))
-         b(i)%phi = jet_t(q(3, i), v(3, i), a(3, i))
-      end do
-   end function moving
-
-   !> The deck's estimates (3, links) of the positions of all links.
-   function positions(m) result(q)
-      type(mechanism_t), intent(in) :: m
-      real(wp) :: q(3, size(m%links))
-      integer :: i
-
-      do i = 1, size(m%links)
-         q(:, i) = m%links(i)%position
-      end do
-   end function positions
+      b%x = constant_jet(q(1, :))
+      b%y = constant_jet(q(2, :))
+      b%phi = constant_jet(q(3, :))
+   end function at_rest
 end module jet_closure

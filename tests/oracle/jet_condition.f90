@@ -2,10 +2,10 @@
 !> rounding in double precision may leave of them.
 module jet_condition
    use kinds, only: wp
-   use quad_jet, only: qp, jet_t, constant_jet
+   use quad_jet, only: qp, jet_t
    use mechanism, only: mechanism_t, pair_prismatic, drive_angle, drive_relangle
    use scales, only: characteristic_length
-   use jet_closure, only: body_jet_t, closure_jets, numbers_of
+   use jet_closure, only: body_jet_t, closure_slopes, numbers_of
    use jet_drives, only: drive_sizes
    use lapack, only: gesvd
    implicit none
@@ -28,46 +28,25 @@ contains
       type(mechanism_t), intent(in) :: m
       type(body_jet_t), intent(in) :: b(:)
       real(qp) :: condition
-      type(body_jet_t) :: moving(size(b))
-      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), held(size(m%drives))
-      real(qp) :: column(size(r), 3*size(b)), body_vector
-      real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), work(8*(size(r) + 3*size(b)))
-      real(wp) :: left(size(r), size(r)), right(3*size(b), 3*size(b))
-      integer :: link, c, n, info
+      real(qp) :: slopes(2*size(m%pairs) + size(m%drives), 3*count(.not. m%links%ground)), body_vector
+      real(wp) :: a(size(slopes, 1), size(slopes, 2)), s(size(slopes, 2)), work(8*(size(slopes, 1) + size(slopes, 2)))
+      real(wp) :: left(size(slopes, 1), size(slopes, 1)), right(size(slopes, 2), size(slopes, 2))
+      integer :: c, n, info
 
+      condition = huge(1.0_wp)
+      n = size(slopes, 2)
+      if (n == 0 .or. n > size(slopes, 1)) return
       body_vector = longest_vector(m)
       if (.not. body_vector > 0.0_qp) body_vector = 1.0_qp
-      n = 0
-      do link = 1, size(b)
-         if (m%links(link)%ground) cycle
-         do c = 1, 3
-            moving = still(b)
-            if (c == 1) moving(link)%x%d = body_vector
-            if (c == 2) moving(link)%y%d = body_vector
-            if (c == 3) moving(link)%phi%d = 1.0_qp
-            n = n + 1
-            r = closure_jets(m, numbers_of(m), moving, held)
-            column(:, n) = r%d
-         end do
+      slopes = closure_slopes(m, numbers_of(m), b)
+      slopes(:, 1::3) = body_vector*slopes(:, 1::3)
+      slopes(:, 2::3) = body_vector*slopes(:, 2::3)
+      do c = 1, size(slopes, 1)
+         a(c, :) = real(slopes(c, :)/max(maxval(abs(slopes(c, :))), tiny(1.0_wp)*1.0_qp), wp)
       end do
-      condition = huge(1.0_wp)
-      if (n == 0 .or. n > size(r)) return
-      do c = 1, size(r)
-         a(c, :n) = real(column(c, :n)/max(maxval(abs(column(c, :n))), tiny(1.0_wp)*1.0_qp), wp)
-      end do
-      call gesvd('A', 'A', size(r), n, a, size(r), s, left, size(r), right, size(right, 1), work, size(work), info)
+      call gesvd('A', 'A', size(a, 1), n, a, size(a, 1), s, left, size(left, 1), right, size(right, 1), work, size(work), info)
       if (info == 0 .and. s(n) > 0.0_wp) condition = real(s(1), qp)/s(n)
    end function condition
-
-   !> The positions of `b` at rest.
-   pure function still(b) result(s)
-      type(body_jet_t), intent(in) :: b(:)
-      type(body_jet_t) :: s(size(b))
-
-      s%x = constant_jet(b%x%v)
-      s%y = constant_jet(b%y%v)
-      s%phi = constant_jet(b%phi%v)
-   end function still
 
    !> The largest offset of any point or pair.
    pure function longest_vector(m) result(body_vector)

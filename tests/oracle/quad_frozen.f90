@@ -4,7 +4,7 @@ module quad_frozen
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
    use mechanism, only: mechanism_t, pair_revolute
-   use jet_closure, only: closure_slopes
+   use jet_closure, only: closure_slopes, numbers_of, at_rest
    use quad_matrices, only: spectral_radius, solve_quad
    implicit none
    private
@@ -227,7 +227,7 @@ contains
       logical :: singular
 
       a = frozen_matrix(m, q, z)
-      g = a - closure_slopes(m, q)
+      g = a - closure_slopes(m, numbers_of(m), at_rest(q))
       call solve_quad(a, g, singular)
       rho = -1.0_qp
       if (.not. singular) rho = spectral_radius(g)

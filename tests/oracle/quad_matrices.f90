@@ -1,6 +1,7 @@
 !> Tests. Matrices in real128: the solution of linear equations, the spectral radius.
 module quad_matrices
    use quad_jet, only: qp
+   use quad_lapack, only: getrf, getrs
    implicit none
    private
    public :: spectral_radius, solve_quad
@@ -29,33 +30,18 @@ contains
       rho = exp(logarithm/2.0_qp**squarings)
    end function spectral_radius
 
-   !> Replaces `b` (n, any number) by a^-1 b: Gauss, with the largest pivot of the column. `singular`: a pivot is
-   !> rounding.
+   !> Replaces `b` (n, any number) by a^-1 b; `a` becomes its factors. `singular`: a pivot is rounding, and `b` is as it was.
    pure subroutine solve_quad(a, b, singular)
       real(qp), intent(inout) :: a(:, :), b(:, :)
       logical, intent(out) :: singular
       real(qp), parameter :: rounding = 1.0e-24_qp
-      real(qp) :: row_a(size(a, 2)), row_b(size(b, 2)), most
-      integer :: i, k, n
+      real(qp) :: most
+      integer :: pivots(size(a, 1)), n, k, info
 
       n = size(a, 1)
       most = maxval(abs(a))
-      singular = .true.
-      do k = 1, n
-         i = k - 1 + maxloc(abs(a(k:, k)), dim=1)
-         if (abs(a(i, k)) <= rounding*most) return
-         row_a = a(i, :)
-         a(i, :) = a(k, :)
-         a(k, :) = row_a/row_a(k)
-         row_b = b(i, :)
-         b(i, :) = b(k, :)
-         b(k, :) = row_b/row_a(k)
-         do i = 1, n
-            if (i == k .or. abs(a(i, k)) <= 0.0_qp) cycle
-            b(i, :) = b(i, :) - a(i, k)*b(k, :)
-            a(i, k:) = a(i, k:) - a(i, k)*a(k, k:)
-         end do
-      end do
-      singular = .false.
+      call getrf(n, n, a, n, pivots, info)
+      singular = any([(abs(a(k, k)), k=1, n)] <= rounding*most)
+      if (.not. singular) call getrs('N', n, size(b, 2), a, n, pivots, b, n, info)
    end subroutine solve_quad
 end module quad_matrices

@@ -10,12 +10,14 @@ program check_forms
    use scales, only: characteristic_length, characteristic_rate
    use structure, only: structure_report_t, find_structure
    use deck, only: read_deck
-   use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
+   use quad_jet, only: qp, jet_t, wrap_angle, operator(+), operator(-), operator(*), sin, cos
    use quad_decks, only: length, angle, law
-   use closed_forms_dyads, only: place_t, body_t, place_on
+   use jet_closure, only: numbers_of, closure_jets
+   use closed_forms_dyads, only: body_t
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    use hand_groups, only: count_by_hand
+   use hand_links, only: sort_links
    implicit none
    !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
    real(qp), parameter :: tolerance = 1.0e-28_qp
@@ -52,10 +54,11 @@ contains
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(body_t) :: links(size(m%links))
+      type(jet_t) :: f(size(m%drives)), r(2*size(m%pairs) + size(m%drives))
       real(qp) :: pairs(0:2), grounds(0:2), driven(0:2), t
+      character(:), allocatable :: fault
       character(40) :: what
-      logical :: same
-      integer :: k
+      integer :: i, k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
       call count_one(tally, agree(count_by_hand(name), find_structure(m)), &
@@ -65,13 +68,15 @@ contains
       driven = 0.0_qp
       do k = 0, instant_count(m) - 1
          t = real(instant(m, k), qp)
-         call sort_links(m, closed_form(name, m%set_number, t), links, same)
-         if (.not. same) exit
-         call check_pairs(m, links, pairs)
+         call sort_links(m, closed_form(name, m%set_number, t), links, fault)
+         if (fault /= '') exit
+         f = [(law_of(m, m%drives(i), t), i=1, size(f))]
+         r = closure_jets(m, numbers_on_cards(m), links, f)
+         call check_pairs(m, links, r, pairs)
          call check_grounds(m, links, grounds)
-         call check_drives(m, links, t, driven)
+         call check_drives(m, links, f, r(2*size(m%pairs) + 1:), driven)
       end do
-      call count_one(tally, same, trim(what)//' links by name')
+      call count_one(tally, fault == '', trim(what)//' links by name')
       do k = 0, 2
          call count_size(pairs(k), trim(what)//' pairs, '//order(k))
          call count_size(grounds(k), trim(what)//' ground links, '//order(k))
@@ -79,45 +84,40 @@ contains
       end do
    end subroutine check_set
 
-   !> The links of a closed form in the deck's order; `same`: they are the deck's.
-   subroutine sort_links(m, form, links, same)
+   !> The numbers of the deck that place anything, as `numbers_of` of jet_closure has them, but what stands on the cards.
+   function numbers_on_cards(m) result(d)
       type(mechanism_t), intent(in) :: m
-      type(body_t), intent(in) :: form(:)
-      type(body_t), intent(out) :: links(:)
-      logical, intent(out) :: same
-      integer :: i, k
+      real(qp), allocatable :: d(:)
+      integer :: i, n
 
-      same = size(form) == size(links)
-      do i = 1, size(form)
-         if (.not. same) return
-         k = findloc(m%links%name == form(i)%name, .true., dim=1)
-         same = k > 0
-         if (same) links(k) = form(i)
+      d = 0.0_qp*numbers_of(m)
+      n = 3*size(m%links)
+      do i = 1, size(m%points)
+         d(n + 2*i - 1:n + 2*i) = [length(m%points(i)%offset(1)), length(m%points(i)%offset(2))]
       end do
-   end subroutine sort_links
+      n = n + 2*size(m%points)
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind /= pair_revolute) d(n + 3*i - 2:n + 3*i) = pair_numbers(m, m%pairs(i))
+      end do
+   end function numbers_on_cards
 
-   subroutine check_pairs(m, links, worst)
+   !> The residuals `r` of the pairs, two of each.
+   subroutine check_pairs(m, links, r, worst)
       type(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
+      type(jet_t), intent(in) :: r(:)
       real(qp), intent(inout) :: worst(0:2)
-      type(place_t) :: p, q
-      type(jet_t) :: along, across, phi
-      real(qp) :: numbers(3)
       integer :: k
 
       do k = 1, size(m%pairs)
          associate (pair => m%pairs(k))
-            p = place_of(m, links, pair%point_i)
-            q = place_of(m, links, pair%point_j)
             if (pair%kind == pair_revolute) then
-               call enlarge(worst, p%x - q%x, size_of(m, links, pair%point_i, pair%point_j))
-               call enlarge(worst, p%y - q%y, size_of(m, links, pair%point_i, pair%point_j))
+               call enlarge(worst, r(2*k - 1), size_of(m, links, pair%point_i, pair%point_j))
+               call enlarge(worst, r(2*k), size_of(m, links, pair%point_i, pair%point_j))
             else
-               call in_guide(m, links, pair, along, across)
-               numbers = numbers_of(m, pair)
-               call enlarge(worst, across - numbers(2), guide_size(m, links, pair))
-               phi = links(m%points(pair%point_j)%link)%phi - links(m%points(pair%point_i)%link)%phi
-               call enlarge(worst, whole_turns_off(phi - numbers(3)), turn_size(m, phi))
+               call enlarge(worst, r(2*k - 1), guide_size(m, links, pair))
+               call enlarge(worst, whole_turns_off(r(2*k)), turn_size(m, links(m%points(pair%point_j)%link)%phi &
+                  - links(m%points(pair%point_i)%link)%phi))
             end if
          end associate
       end do
@@ -141,57 +141,30 @@ contains
       end do
    end subroutine check_grounds
 
-   subroutine check_drives(m, links, t, worst)
+   !> The residuals `r` of the drives, whose laws are `f`.
+   subroutine check_drives(m, links, f, r, worst)
       type(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
-      real(qp), intent(in) :: t
+      type(jet_t), intent(in) :: f(:), r(:)
       real(qp), intent(inout) :: worst(0:2)
-      type(place_t) :: p
-      type(jet_t) :: along, across, phi, f
       integer :: k
 
       do k = 1, size(m%drives)
          associate (subject => m%drives(k)%subject)
-            f = law_of(m, m%drives(k), t)
             select case (m%drives(k)%kind)
             case (drive_angle, drive_relangle)
-               phi = links(subject)%phi
-               if (m%drives(k)%kind == drive_relangle) phi = links(m%drives(k)%second)%phi - phi
-               call enlarge(worst, whole_turns_off(phi - f), turn_size(m, f))
-            case (drive_x)
-               p = place_of(m, links, subject)
-               call enlarge(worst, p%x - f, size_of(m, links, subject, subject))
-            case (drive_y)
-               p = place_of(m, links, subject)
-               call enlarge(worst, p%y - f, size_of(m, links, subject, subject))
+               call enlarge(worst, whole_turns_off(r(k)), turn_size(m, f(k)))
+            case (drive_x, drive_y)
+               call enlarge(worst, r(k), size_of(m, links, subject, subject))
             case (drive_slide)
-               call in_guide(m, links, m%pairs(subject), along, across)
-               call enlarge(worst, along - f, guide_size(m, links, m%pairs(subject)))
+               call enlarge(worst, r(k), guide_size(m, links, m%pairs(subject)))
             end select
          end associate
       end do
    end subroutine check_drives
 
-   !> The place of Q along the guide of a prismatic pair, seen from P, and that of P across it, seen from Q.
-   subroutine in_guide(m, links, pair, along, across)
-      type(mechanism_t), intent(in) :: m
-      type(body_t), intent(in) :: links(:)
-      type(pair_t), intent(in) :: pair
-      type(jet_t), intent(out) :: along, across
-      type(place_t) :: p, q
-      type(jet_t) :: theta
-      real(qp) :: numbers(3)
-
-      p = place_of(m, links, pair%point_i)
-      q = place_of(m, links, pair%point_j)
-      numbers = numbers_of(m, pair)
-      theta = links(m%points(pair%point_i)%link)%phi + numbers(1)
-      along = (q%x - p%x)*cos(theta) + (q%y - p%y)*sin(theta)
-      across = (p%y - q%y)*cos(theta) - (p%x - q%x)*sin(theta)
-   end subroutine in_guide
-
    !> Alpha, h and beta of a prismatic pair: those of its card or, where these are blank, of the drawing.
-   function numbers_of(m, pair) result(numbers)
+   function pair_numbers(m, pair) result(numbers)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
       real(qp) :: numbers(3), d(2), phi(2)
@@ -203,7 +176,7 @@ contains
       if (pair%drawn(1)) numbers(1) = atan2(d(2), d(1)) - phi(1)
       if (pair%drawn(2)) numbers(2) = d(1)*sin(phi(1) + numbers(1)) - d(2)*cos(phi(1) + numbers(1))
       if (pair%drawn(3)) numbers(3) = phi(2) - phi(1)
-   end function numbers_of
+   end function pair_numbers
 
    !> The law of a drive; its value at t = 0 is that of its card or, where this is blank, of the drawing.
    type(jet_t) function law_of(m, drive, t) result(f)
@@ -229,7 +202,7 @@ contains
             f = f + merge(d(1), d(2), drive%kind == drive_x)
          case default
             d = drawn_place(m, m%pairs(k)%point_j) - drawn_place(m, m%pairs(k)%point_i)
-            numbers = numbers_of(m, m%pairs(k))
+            numbers = pair_numbers(m, m%pairs(k))
             numbers(1) = numbers(1) + angle(m, m%links(m%points(m%pairs(k)%point_i)%link)%position(3))
             f = f + (d(1)*cos(numbers(1)) + d(2)*sin(numbers(1)))
          end select
@@ -250,19 +223,11 @@ contains
       end associate
    end function drawn_place
 
-   type(place_t) function place_of(m, links, i) result(p)
-      type(mechanism_t), intent(in) :: m
-      type(body_t), intent(in) :: links(:)
-      integer, intent(in) :: i
-
-      p = place_on(links(m%points(i)%link), length(m%points(i)%offset(1)), length(m%points(i)%offset(2)))
-   end function place_of
-
    !> An angle brought to the whole turn next to zero.
    type(jet_t) function whole_turns_off(phi) result(rest)
       type(jet_t), intent(in) :: phi
 
-      rest = phi - 2.0_qp*pi_q*anint(phi%v/(2.0_qp*pi_q))
+      rest = jet_t(wrap_angle(phi%v), phi%d, phi%dd)
    end function whole_turns_off
 
    !> What a difference of two points' places, velocities and accelerations is measured by: the largest term in it, or

@@ -4,8 +4,8 @@ module closed_forms_dyads
    use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
    implicit none
    private
-   public :: place_t, body_t, flat, origin, base, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, &
-      corner, mirrored, swapped, on_line, four_bar_links, bars, slider_crank, drawn_link, natural_spline_3
+   public :: place_t, body_t, flat, origin, base, fixed_place, body, motion_of, place_on, polar, direction, distance_squared, &
+      third_corner, corner, mirrored, swapped, on_line, four_bar_links, bars, slider_crank, drawn_link, natural_spline_3
 
    !> A point of the plane.
    type :: place_t
@@ -14,14 +14,14 @@ module closed_forms_dyads
 
    !> A link by its name in the deck: the origin of its axes and their angle (radians).
    type :: body_t
-      character(8) :: name = ''
       type(jet_t) :: x, y, phi
+      character(8) :: name = ''
    end type body_t
 
    !> What stays 0, the origin of the plane's axes, and the ground that is drawn there.
    type(jet_t), parameter :: flat = jet_t(0.0_qp, 0.0_qp, 0.0_qp)
    type(place_t), parameter :: origin = place_t(flat, flat)
-   type(body_t), parameter :: base = body_t('BASE', flat, flat, flat)
+   type(body_t), parameter :: base = body_t(flat, flat, flat, 'BASE')
 
 contains
 
@@ -38,8 +38,18 @@ contains
       type(place_t), intent(in) :: p
       type(jet_t), intent(in) :: phi
 
-      b = body_t(name, p%x, p%y, phi)
+      b = body_t(p%x, p%y, phi, name)
    end function body
+
+   !> x, y, phi of a link and their derivatives (3, 0:2).
+   pure function motion_of(b) result(motion)
+      type(body_t), intent(in) :: b
+      real(qp) :: motion(3, 0:2)
+
+      motion(:, 0) = [b%x%v, b%y%v, b%phi%v]
+      motion(:, 1) = [b%x%d, b%y%d, b%phi%d]
+      motion(:, 2) = [b%x%dd, b%y%dd, b%phi%dd]
+   end function motion_of
 
    !> The point (xi, eta) of a link.
    pure type(place_t) function place_on(b, xi, eta) result(p)

@@ -9,7 +9,7 @@ module closed_forms_published
    public :: published
 
    !> The ground of these decks.
-   type(body_t), parameter :: frame = body_t('FRAME', flat, flat, flat)
+   type(body_t), parameter :: frame = body_t(flat, flat, flat, 'FRAME')
 
 contains
 

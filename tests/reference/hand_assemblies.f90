@@ -1,7 +1,7 @@
 !> Tests. The answers to cards ASSEMBLY and CIRCUITS as the listing must print them, from closed forms in real128.
 module hand_assemblies
    use mechanism, only: mechanism_t
-   use quad_jet, only: qp, pi_q, degree_q, time_jet
+   use quad_jet, only: qp, degree_q, time_jet, wrap_angle
    use closed_forms_dyads, only: body_t
    use closed_forms_assemblies, only: platform_assemblies, platform, crank_limit
    use closed_forms_four_bars, only: triple_rocker
@@ -112,7 +112,7 @@ contains
       distance = 0.0_qp
       do i = 1, size(links)
          off = [links(i)%x%v, links(i)%y%v, links(i)%phi%v] - m%links(i)%position
-         off(3) = off(3) - 2.0_qp*pi_q*anint(off(3)/(2.0_qp*pi_q))
+         off(3) = wrap_angle(off(3))
          distance = distance + off(3)**2 + min(sum(off(:2)**2)/length_by_hand(m)**2, 0.25_qp**2)
       end do
       distance = sqrt(distance)
@@ -132,7 +132,7 @@ contains
       write (form, '(a, i0, a)') '(a8, a8, 16x, 2f16.', 9 - floor(log10(large)), ', f16.7)'
       call put(o, '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|')
       do i = 2, size(links)
-         phi = links(i)%phi%v - 2.0_qp*pi_q*anint((links(i)%phi%v - m%links(i)%position(3))/(2.0_qp*pi_q))
+         phi = m%links(i)%position(3) + wrap_angle(links(i)%phi%v - m%links(i)%position(3))
          write (line, form) 'LINK    ', links(i)%name, links(i)%x%v, links(i)%y%v, phi/degree_q
          call put(o, trim(line))
       end do

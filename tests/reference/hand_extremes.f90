@@ -3,7 +3,7 @@
 !> velocity.
 module hand_extremes
    use mechanism, only: mechanism_t, request_link, request_point, request_ratio
-   use quad_jet, only: qp, pi_q, jet_t, degree_q
+   use quad_jet, only: qp, degree_q, wrap_angle
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t, length_by_hand, rate_by_hand
    use hand_numbers, only: number_by_hand, field_length
@@ -502,13 +502,6 @@ contains
          e%value = value_at(m, g, q, c, 0, e%t, low)
       end function dead_centre
    end subroutine find_dead_centres
-
-   !> An angle less whole turns.
-   elemental real(qp) function wrap_angle(phi)
-      real(qp), intent(in) :: phi
-
-      wrap_angle = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
-   end function wrap_angle
 
    !> The lines of the dwells within a distance of the extreme `e`: each time that the column comes inside.
    subroutine put_dwells(o, m, scales, g, q, c, way, e, drive)

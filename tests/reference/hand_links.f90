@@ -1,13 +1,13 @@
 !> Tests. The links of a deck at any time by its closed form, angles without leaps; and with one drive that moves alone.
 module hand_links
    use mechanism, only: mechanism_t
-   use quad_jet, only: qp, pi_q, jet_t, constant_jet, time_jet
+   use quad_jet, only: qp, jet_t, constant_jet, time_jet, wrap_angle
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
    use closed_forms_ratios, only: ratio_laws, by_drives
    implicit none
    private
-   public :: move_links_to, links_by_drive
+   public :: move_links_to, links_by_drive, sort_links
 
 contains
 
@@ -48,7 +48,19 @@ contains
       type(body_t), intent(in) :: found(:)
       type(body_t), intent(inout) :: links(:)
       character(:), allocatable, intent(out) :: fault
-      real(qp) :: phi
+      real(qp) :: before(size(links))
+
+      before = links%phi%v
+      call sort_links(m, found, links, fault)
+      links%phi%v = before + wrap_angle(links%phi%v - before)
+   end subroutine put_links
+
+   !> The links of a closed form, `found`, in the order of the deck of `m`. `fault`: what does not fit, '' if all does.
+   subroutine sort_links(m, found, links, fault)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: found(:)
+      type(body_t), intent(inout) :: links(:)
+      character(:), allocatable, intent(out) :: fault
       integer :: k, i
 
       fault = ''
@@ -56,20 +68,8 @@ contains
       do i = 1, size(found)
          if (fault /= '') return
          k = findloc(m%links%name == found(i)%name, .true., dim=1)
-         if (k == 0) then
-            fault = 'THE DECK HAS NO LINK '//found(i)%name
-            return
-         end if
-         phi = next_to(links(k)%phi%v, found(i)%phi%v)
-         links(k) = found(i)
-         links(k)%phi%v = phi
+         if (k == 0) fault = 'THE DECK HAS NO LINK '//found(i)%name
+         if (k > 0) links(k) = found(i)
       end do
-   end subroutine put_links
-
-   !> `phi` turned by whole turns until it is within half a turn of `before`.
-   pure real(qp) function next_to(before, phi)
-      real(qp), intent(in) :: before, phi
-
-      next_to = phi + 2.0_qp*pi_q*anint((before - phi)/(2.0_qp*pi_q))
-   end function next_to
+   end subroutine sort_links
 end module hand_links

@@ -4,7 +4,7 @@ module hand_rows
    use mechanism, only: mechanism_t, drive_t, request_t, request_link, request_point, request_pair, request_measure, &
       request_ratio, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, pair_prismatic, &
       measure_distance, measure_line, measure_angle, measure_xi, measure_sum
-   use quad_jet, only: qp, jet_t, pi_q, constant_jet, operator(+), operator(-), operator(*), sin, cos, sqrt, atan2
+   use quad_jet, only: qp, jet_t, constant_jet, wrap_angle, operator(+), operator(-), operator(*), sin, cos, sqrt
    use closed_forms_dyads, only: body_t, place_t, place_on, direction, distance_squared
    implicit none
    private
@@ -200,7 +200,7 @@ contains
                end if
             end do
             value = one(2) - one(1)
-            if (any(subjects%kind == request_measure)) value%v = value%v - 2.0_qp*pi_q*anint(value%v/(2.0_qp*pi_q))
+            if (any(subjects%kind == request_measure)) value%v = wrap_angle(value%v)
          case (measure_sum)
             value = constant_jet(real(measure%constant, qp))
             do k = 1, size(subjects)

@@ -12,8 +12,8 @@ program kind_errors
    use mechanism, only: mechanism_t, instant_count
    use scales, only: characteristic_length, characteristic_rate
    use deck, only: read_deck
-   use quad_jet, only: qp, pi_q, degree_q
-   use closed_forms_dyads, only: body_t
+   use quad_jet, only: qp, degree_q, wrap_angle
+   use closed_forms_dyads, only: body_t, motion_of
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    use csv_cells, only: cells, cell_length, split
@@ -206,7 +206,7 @@ contains
          if (known(i)%deck /= name .or. known(i)%link /= link) cycle
          if (known(i)%set /= set .or. known(i)%step /= step) cycle
          off = value - reshape(known(i)%value, [3, 3])
-         off(3, 0) = off(3, 0) - 2.0_qp*pi_q*anint(off(3, 0)/(2.0_qp*pi_q))
+         off(3, 0) = wrap_angle(off(3, 0))
          allowed = spread(limits(inverse), 1, 3)*max(1.0_qp, abs(reshape(known(i)%value, [3, 3])))
          hits = hits + 1
          call count_one(tally, all(abs(off) <= allowed), name//': 50 digits')
@@ -220,9 +220,8 @@ contains
       type(errors_t), intent(inout) :: e
       real(qp) :: off(3)
 
-      off = abs(value - [exact%x%v, exact%y%v, exact%phi%v])
-      off(3) = abs(off(3) - 2.0_qp*pi_q*anint(off(3)/(2.0_qp*pi_q)))
-      e%there = max(e%there, maxval(off))
+      off = value - [exact%x%v, exact%y%v, exact%phi%v]
+      e%there = max(e%there, maxval(abs([off(:2), wrap_angle(off(3))])))
    end subroutine compare_place
 
    subroutine compare(value, exact, e)
@@ -231,10 +230,8 @@ contains
       type(errors_t), intent(inout) :: e
       real(qp) :: right(3, 0:2), off(3, 0:2)
 
-      right(1, :) = [exact%x%v, exact%x%d, exact%x%dd]
-      right(2, :) = [exact%y%v, exact%y%d, exact%y%dd]
-      right(3, :) = [exact%phi%v, exact%phi%d, exact%phi%dd]
-      right(3, 0) = right(3, 0) + 2.0_qp*pi_q*anint((value(3, 0) - right(3, 0))/(2.0_qp*pi_q))
+      right = motion_of(exact)
+      right(3, 0) = value(3, 0) + wrap_angle(right(3, 0) - value(3, 0))
       off = abs(value - right)
       e%error(1, :) = max(e%error(1, :), off(1, :), off(2, :))
       e%error(2, :) = max(e%error(2, :), off(3, :))

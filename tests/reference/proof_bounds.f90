@@ -1,6 +1,6 @@
 !> Tests. `proof_bounds DECK...`: what card PROVE proves of every deck, beside the closed forms in real128. No bound of any
-!> number of any link at any instant is below its true error, and every instant is proved but those of the list: the
-!> position, and the step to it; these with their reason. The last line is `N passed, N failed`.
+!> number of any link at any instant is below its true error, and every instant is proved, the
+!> position and the step to it, but instants at a change point and steps that pass one or begin at it. The last line is `N passed, N failed`.
 program proof_bounds
    use kinds, only: wp
    use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
@@ -15,28 +15,9 @@ program proof_bounds
    use motion_errors, only: away
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
    use closed_forms, only: closed_form
+   use hand_groups, only: change_times
    implicit none
 
-   !> What is not proved, and why: at the times `change` all links of a loop are in line, a change point. An instant there
-   !> has no proof, nor has the step that passes it or begins at it.
-   type :: exception_t
-      character(24) :: deck
-      integer :: instants(4)
-      real(wp) :: change(2)
-   end type exception_t
-   type(exception_t), parameter :: exceptions(*) = [ &
-      exception_t('antiparallelogram_across', [14, 28, 0, 0], [13.2_wp, 27.6_wp]), &
-      exception_t('antiparallelogram_at', [11, 12, 0, 0], [13.2_wp, 27.6_wp]), &
-      exception_t('antiparallelogram_branch', [2, 16, 0, 0], [13.2_wp, 27.6_wp]), &
-      exception_t('kite_across', [16, 34, 0, 0], [16.0_wp, 34.0_wp]), &
-      exception_t('kite_at', [8, 9, 17, 18], [16.0_wp, 34.0_wp]), &
-      exception_t('kite_branch', [16, 34, 0, 0], [16.0_wp, 34.0_wp]), &
-      exception_t('parallelogram', [16, 34, 0, 0], [16.0_wp, 34.0_wp]), &
-      exception_t('parallelogram_at', [8, 9, 17, 18], [16.0_wp, 34.0_wp]), &
-      exception_t('parallelogram_branch', [16, 34, 0, 0], [16.0_wp, 34.0_wp]), &
-      exception_t('scott_russell', [5, 20, 0, 0], [5.0_wp, 20.0_wp]), &
-      exception_t('scott_russell_at', [5, 6, 20, 21], [5.0_wp, 20.0_wp]), &
-      exception_t('scott_russell_branch', [5, 20, 0, 0], [5.0_wp, 20.0_wp])]
    !> Times of instants agree with those of change points up to this.
    real(wp), parameter :: same_time = 1.0e-9_wp
    enum, bind(c)
@@ -84,38 +65,34 @@ contains
          call advance_set(a, instant(m, k))
          call prove_set(a, .true.)
          if (.not. all(holds(a%now%proofs(1:)))) open = open + 1
-         if (reason_found(a) /= reason_listed(m, name, k)) wrong = wrong + 1
+         if (reason_found(a) /= reason_expected(m, name, k)) wrong = wrong + 1
          do c = 1, a%now%count
             if (a%now%proofs(c)%is_proved) call weigh(a%now%parts(c), a%now%motions(c), a%now%proofs(c)%links, &
                closed_form(name, m%set_number, real(instant(m, k), qp)), below)
          end do
       end do
       if (open > 0 .or. wrong > 0) print '(1x,a,i0,a,i0)', name//', ', m%set_number, ': NOT PROVED ', open
-      call count_one(tally, wrong == 0, name//': every step is proved but those of the list, for its reason')
+      call count_one(tally, wrong == 0, name//': every step is proved but at change points')
       call count_one(tally, below == 0, name//': no bound is below the true error')
    end subroutine check_set
 
-   !> Why instant number `k` of `m`, the deck `name`, is not proved by the list: is_proved, ...
-   pure integer function reason_listed(m, name, k) result(reason)
+   !> Why instant number `k` of `m`, the deck `name`, is not proved: is_proved, at_change or passes_change. At a change point all
+   !> links of a loop are in line.
+   pure integer function reason_expected(m, name, k) result(reason)
       type(mechanism_t), intent(in) :: m
       character(*), intent(in) :: name
       integer, intent(in) :: k
       real(wp) :: t, before
-      integer :: i
 
       reason = is_proved
       if (k == 0) return
-      i = findloc(exceptions%deck == name, .true., dim=1)
-      if (i == 0) return
-      if (.not. any(exceptions(i)%instants == k)) return
       t = instant(m, k)
       before = instant(m, k - 1)
-      associate (change => exceptions(i)%change)
-         reason = other_reason
+      associate (change => change_times(name))
          if (any(change > min(before, t) - same_time .and. change < max(before, t) + same_time)) reason = passes_change
          if (any(abs(change - t) < same_time)) reason = at_change
       end associate
-   end function reason_listed
+   end function reason_expected
 
    !> Why the instant is not proved that `a` has come to, by its flags and branches.
    pure integer function reason_found(a) result(reason)

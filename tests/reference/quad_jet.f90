@@ -4,7 +4,7 @@ module quad_jet
    use, intrinsic :: iso_fortran_env, only: real128
    implicit none
    private
-   public :: qp, jet_t, pi_q, degree_q, constant_jet, time_jet
+   public :: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, wrap_angle
    public :: operator(+), operator(-), operator(*), operator(/)
    public :: sqrt, sin, cos, atan2
 
@@ -60,6 +60,13 @@ contains
 
       time_jet = jet_t(t, 1.0_qp, 0.0_qp)
    end function time_jet
+
+   !> An angle less whole turns: half a turn at most.
+   elemental real(qp) function wrap_angle(phi)
+      real(qp), intent(in) :: phi
+
+      wrap_angle = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
+   end function wrap_angle
 
    elemental type(jet_t) function add_jets(a, b) result(c)
       type(jet_t), intent(in) :: a, b

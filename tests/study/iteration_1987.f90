@@ -8,7 +8,7 @@ module iteration_1987
    use linear_solver, only: factors_t, new_factors, factor, solve
    use configuration, only: set_configuration, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
-   use quad_jet, only: qp, pi_q, degree_q
+   use quad_jet, only: qp, degree_q, wrap_angle
    use jet_closure, only: closure
    use quad_frozen, only: references_t, printed_references, nearest_references, dyad_references, &
       frozen_matrix, theory
@@ -166,7 +166,7 @@ contains
       real(qp) :: d(3, size(q, 2))
 
       d = q - exact(s, angle)
-      d(3, :) = d(3, :) - 2.0_qp*pi_q*anint(d(3, :)/(2.0_qp*pi_q))
+      d(3, :) = wrap_angle(d(3, :))
       error = real(maxval(abs(d)), wp)
    end function error_of
 

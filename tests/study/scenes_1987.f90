@@ -7,7 +7,7 @@ module scenes_1987
    use scales, only: characteristic_length, power_of_two
    use sample_mechanisms, only: magnified
    use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, choose_references
-   use quad_jet, only: qp, pi_q, degree_q
+   use quad_jet, only: qp, pi_q, degree_q, wrap_angle
    use quad_frozen, only: references_t
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
@@ -67,7 +67,7 @@ contains
       real(qp), intent(in) :: before(:)
       real(qp), intent(inout) :: phi(:)
 
-      phi = phi - 2.0_qp*pi_q*anint((phi - before)/(2.0_qp*pi_q))
+      phi = before + wrap_angle(phi - before)
    end subroutine go_on
 
    !> The closed form of mechanism `i` with the crank at `k` degrees, lengths in `unit`. The crossed four-bar is the
