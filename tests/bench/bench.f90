@@ -13,7 +13,7 @@ program bench
    use bench_lanes, only: lanes_table, judge_sines
    implicit none
    character(200), allocatable :: arguments(:)
-   integer :: i, steps, count, failed
+   integer :: i, steps, count
 
    allocate (arguments(max(4, command_argument_count())))
    do i = 1, size(arguments)
@@ -25,8 +25,7 @@ program bench
       call coarse_table()
    case ('sines')
       read (arguments(2), *) count
-      call judge_sines(count, failed)
-      if (failed > 0) stop 1, quiet=.true.
+      call judge_sines(count)
    case ('lanes')
       call lanes_table(trim(arguments(2)))
    case ('chains')
@@ -35,8 +34,7 @@ program bench
       call scene_line(trim(arguments(2)), trim(arguments(3)), trim(arguments(4)))
    case ('results')
       read (arguments(3), *) steps
-      call judge_all(arguments(4:), trim(arguments(2)), steps, failed)
-      if (failed > 0) stop 1, quiet=.true.
+      call judge_all(arguments(4:), trim(arguments(2)), steps)
    case default
       error stop 'BENCH: WHICH TABLE?'
    end select

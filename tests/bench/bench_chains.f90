@@ -3,11 +3,18 @@
 !> whole chain, in real128.
 module bench_chains
    use kinds, only: wp
-   use quad_jet, only: qp
+   use quad_jet
+   use closed_forms_dyads, only: place_t, body_t, flat, origin, base, fixed_place, body, polar
    use fast_forms, only: spot_t, two_rods, put_link
    implicit none
    private
-   public :: link_order_t, new_chain, move_chain, exact_chain
+   public :: size_t, link_order_t, new_chain, move_chain, exact_chain
+
+   !> A chain of make_deck.
+   type :: size_t
+      character(7) :: kind
+      integer :: n
+   end type size_t
 
    !> The number in the deck's title and, of a lattice, where its legs stand and its rods begin.
    type :: link_order_t
@@ -200,83 +207,60 @@ contains
       if (i == 1 .or. i == n .or. j == 1 .or. j == n) has_leg = has_leg .or. mod(i + j, 2) == 0
    end function has_leg
 
-   !> The motion (3, links) at `t` by what make_deck says of the whole chain, rounded once.
-   subroutine exact_chain(c, t, q, v, a)
+   !> The links at `t` by what make_deck says of the whole chain, in real128.
+   function exact_chain(c, t) result(links)
       type(link_order_t), intent(in) :: c
-      real(wp), intent(in) :: t
-      real(wp), intent(inout) :: q(:, :), v(:, :), a(:, :)
+      real(qp), intent(in) :: t
+      type(body_t), allocatable :: links(:)
+      type(jet_t) :: phi
       integer :: i
-      real(qp) :: x(3, 0:2), sums(2, 0:2)
 
-      if (c%kind == 'lattice') then
-         call move_chain(c, t, q, v, a)
-         return
-      end if
-      sums = 0.0_qp
-      do i = 1, size(q, 2)
-         x = 0.0_qp
-         select case (c%kind)
-         case ('windows')
-            if (i > 1) x = exact_window(i, 1.0_wp + real(t, qp))
-         case ('scissor')
-            if (i > 1) x = exact_stage(i, 0.4_wp + real(t, qp))
-         case ('arm')
-            if (i > 1) call exact_arm(i - 1, t, sums, x)
-         end select
-         q(:, i) = real(x(:, 0), wp)
-         v(:, i) = real(x(:, 1), wp)
-         a(:, i) = real(x(:, 2), wp)
-      end do
-   end subroutine exact_chain
+      allocate (links(1))
+      links(1) = base
+      select case (c%kind)
+      case ('windows')
+         ! Rods, and couplers that stay level.
+         phi = 1.0_qp + time_jet(t)
+         do i = 0, c%n
+            associate (foot => fixed_place(real(i, qp), 0.0_qp))
+               links = [links, body('', foot, phi)]
+               if (i < c%n) links = [links, body('', polar(foot, 1.0_qp, phi), flat)]
+            end associate
+         end do
+      case ('scissor')
+         ! The feet of stage i = 0, 1, ... are 2 i sin phi above the ground, the right ones 2 cos phi from the left ones.
+         phi = 0.4_qp + time_jet(t)
+         links = [links, body('', place_t(2.0_qp*cos(phi), flat), flat)]
+         do i = 0, c%n/2 - 1
+            links = [links, body('', place_t(flat, 2.0_qp*i*sin(phi)), phi), &
+                     body('', place_t(2.0_qp*cos(phi), 2.0_qp*i*sin(phi)), pi_q - phi)]
+         end do
+      case ('arm')
+         call add_arm()
+      case ('lattice')
+         ! Legs, and rods that do not turn.
+         phi = 1.0_qp + time_jet(t)
+         do i = 1, size(c%place, 2)
+            associate (place => real(c%place(:, i), qp))
+               if (i <= c%legs) links = [links, body('', fixed_place(place(1), place(2)), phi)]
+               if (i > c%legs) links = [links, body('', polar(fixed_place(place(1), place(2)), 1.0_qp, phi), &
+                  constant_jet(place(3)))]
+            end associate
+         end do
+      end select
 
-   !> Link `i` of the windows: a rod, or a coupler that stays level; (3, 0:2) with both derivatives.
-   pure function exact_window(i, phi) result(x)
-      integer, intent(in) :: i
-      real(qp), intent(in) :: phi
-      real(qp) :: x(3, 0:2)
+   contains
 
-      x = 0.0_qp
-      if (mod(i, 2) == 0) then
-         x(:, 0) = [(i - 2)/2 + 0.0_qp, 0.0_qp, phi]
-         x(3, 1) = 1.0_qp
-      else
-         x(:2, 0) = [(i - 3)/2 + cos(phi), sin(phi)]
-         x(:2, 1) = [-sin(phi), cos(phi)]
-         x(:2, 2) = [-cos(phi), -sin(phi)]
-      end if
-   end function exact_window
+      !> Link after link; the deck holds the doubles next to 0.002 and 0.001.
+      subroutine add_arm()
+         type(place_t) :: tip
 
-   !> Link `i` of the scissor: the feet of stage k = 0, 1, ... are 2 k sin phi above the ground, the right ones
-   !> 2 cos phi from the left ones.
-   pure function exact_stage(i, phi) result(x)
-      integer, intent(in) :: i
-      real(qp), intent(in) :: phi
-      real(qp) :: x(3, 0:2), right
-      integer :: k
-
-      k = max(0, (i - 3)/2)
-      right = merge(2.0_qp, 0.0_qp, mod(i, 2) == 0)
-      x(:, 0) = [right*cos(phi), 2*k*sin(phi), phi]
-      x(:, 1) = [-right*sin(phi), 2*k*cos(phi), 1.0_qp]
-      x(:, 2) = [-right*cos(phi), -2*k*sin(phi), 0.0_qp]
-      if (mod(i, 2) == 0) x(3, :2) = [acos(-1.0_qp) - phi, -1.0_qp, 0.0_qp]
-      if (i == 2) x(3, :) = 0.0_qp
-   end function exact_stage
-
-   !> Link `i` of the arm at `sums`, the tip of the one before; the deck holds the doubles next to 0.002 and 0.001.
-   pure subroutine exact_arm(i, t, sums, x)
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      real(qp), intent(inout) :: sums(2, 0:2)
-      real(qp), intent(out) :: x(3, 0:2)
-      real(qp) :: phi, w
-
-      w = i*real(0.001_wp, qp)
-      phi = i*real(0.002_wp, qp) + w*t
-      x(:2, :) = sums
-      x(3, :) = [phi, w, 0.0_qp]
-      sums(:, 0) = sums(:, 0) + [cos(phi), sin(phi)]
-      sums(:, 1) = sums(:, 1) + [-w*sin(phi), w*cos(phi)]
-      sums(:, 2) = sums(:, 2) - [w*w*cos(phi), w*w*sin(phi)]
-   end subroutine exact_arm
+         tip = origin
+         do i = 1, c%n
+            phi = real(i, qp)*(real(0.002_wp, qp) + real(0.001_wp, qp)*time_jet(t))
+            links = [links, body('', tip, phi)]
+            tip = polar(tip, 1.0_qp, phi)
+         end do
+      end subroutine add_arm
+   end function exact_chain
 end module bench_chains

@@ -8,6 +8,7 @@ module bench_lanes
    use lane_state, only: lanes_t
    use lane_sines, only: max_angle
    use study, only: seconds
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    use sine_errors, only: largest_sine_error
    use bench_tools, only: spread_t, spread_of, figure
    use bench_scenes, only: scene_t, new_scene, chain_scene, by_closed_form, steps_of_turn
@@ -85,16 +86,16 @@ contains
       if (.not. all(runs%is_over) .or. any(runs%counts%flagged > 0)) error stop 'A VARIANT OF THE BENCH HAS NO MOTION'
    end function time_of
 
-   !> Compares the lanes' sines and cosines of `count` angles with those of real128. `failed`: 1 if one is off by more
+   !> Compares the lanes' sines and cosines of `count` angles with those of real128; ends with status 1 if one is off by more
    !> than 0.8 of its last digit.
-   subroutine judge_sines(count, failed)
+   subroutine judge_sines(count)
       integer, intent(in) :: count
-      integer, intent(out) :: failed
+      type(certificate_counts_t) :: tally
       real(wp) :: largest
 
       largest = max(largest_sine_error(count/2, 7.0_wp), largest_sine_error(count/2, max_angle))
-      failed = merge(0, 1, largest < 0.8_wp)
       print '(a, i0, a, f5.3)', ' SINES AND COSINES IN LANES OF ', count, ' ANGLES: THE LARGEST ERROR IN LAST DIGITS: ', largest
-      print '(i0, a, i0, a)', 1 - failed, ' passed, ', failed, ' failed'
+      call count_one(tally, largest < 0.8_wp, 'sines and cosines')
+      call conclude(tally)
    end subroutine judge_sines
 end module bench_lanes

@@ -3,8 +3,9 @@
 module bench_results
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
-   use deck_tally, only: deck_name, sets_of
+   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
    use structure, only: structure_report_t, find_structure
+   use bench_chains, only: size_t
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
    implicit none
    private
@@ -19,15 +20,6 @@ module bench_results
    !> Conditions of positions that are not hard.
    real(wp), parameter :: far_from_dead_points = 1.0e2_wp
 
-   type :: certificate_counts_t
-      integer :: passed = 0, failed = 0
-   end type certificate_counts_t
-
-   type :: size_t
-      character(7) :: kind
-      integer :: n
-   end type size_t
-
    !> Chains that are small enough for all equations at once.
    type(size_t), parameter :: small(9) = [size_t('windows', 1), size_t('windows', 10), size_t('windows', 30), &
       size_t('scissor', 2), size_t('scissor', 30), size_t('arm', 10), size_t('arm', 60), size_t('lattice', 3), &
@@ -39,11 +31,10 @@ module bench_results
 contains
 
    !> Compares on the decks `inputs`, all their sets, and on the chains in the directory `decks`, at `steps` instants;
-   !> prints the table and, last, the count.
-   subroutine judge_all(inputs, decks, steps, failed)
+   !> prints the table and, last, the count; ends with status 1 if any differ.
+   subroutine judge_all(inputs, decks, steps)
       character(*), intent(in) :: inputs(:), decks
       integer, intent(in) :: steps
-      integer, intent(out) :: failed
       type(certificate_counts_t) :: tally
       type(scene_t) :: s
       integer :: i
@@ -66,8 +57,7 @@ contains
          call judge_exactly(s, large(i)%kind, min(steps, 10), tally)
       end do
       call judge_change_point(decks, tally)
-      failed = tally%failed
-      print '(i0, a, i0, a)', tally%passed, ' passed, ', tally%failed, ' failed'
+      call conclude(tally)
    end subroutine judge_all
 
    !> Every set of a deck of input/, over the time that it asks for.
@@ -169,10 +159,6 @@ contains
       good = g%instants > 0 .and. g%flagged == 0 .and. part <= 1.0_wp
       print '(1x, a20, 1x, a14, i8, i8, 4es11.1, es9.1, a)', name//repeat(' ', 20), what//repeat(' ', 14), g%instants, &
          g%flagged, g%condition, g%worst, part, trim(merge('       ', ' FAILED', good))
-      if (good) then
-         tally%passed = tally%passed + 1
-      else
-         tally%failed = tally%failed + 1
-      end if
+      call count_one(tally, good, name//', '//what)
    end subroutine judge
 end module bench_results

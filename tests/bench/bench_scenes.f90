@@ -12,14 +12,14 @@ module bench_scenes
    use analysis, only: analysis_t, make_analysis, advance
    use plane_vectors, only: degree
    use quad_jet, only: qp
-   use closed_forms_dyads, only: body_t
+   use closed_forms_dyads, only: body_t, motion_of
    use closed_forms, only: closed_form
    use fast_forms, only: form, fast_four_bar, fast_yoke, fast_andrews, fast_jansen
    use bench_chains, only: link_order_t, new_chain, move_chain, exact_chain
    implicit none
    private
    public :: scene_t, new_scene, chain_scene, move_fast, move_exactly, by_method
-   public :: gap_t, error_of, gap_of, instant_of, by_closed_form, steps_of_turn
+   public :: gap_t, error_of, gap_of, widen, instant_of, by_closed_form, steps_of_turn
 
    !> In the place of a method: the closed form written for speed.
    integer, parameter :: by_closed_form = 0
@@ -120,17 +120,16 @@ contains
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: q
       type(body_t), allocatable :: links(:)
+      real(qp) :: motion(3, 0:2)
       integer :: i
 
-      if (s%chain%n > 0) then
-         call exact_chain(s%chain, t, q%position, q%velocity, q%acceleration)
-         return
-      end if
-      allocate (links, source=closed_form(s%name, s%set, real(t, qp)))
+      if (s%chain%n > 0) links = exact_chain(s%chain, real(t, qp))
+      if (s%chain%n == 0) links = closed_form(s%name, s%set, real(t, qp))
       do i = 1, size(links)
-         q%position(:, i) = real([links(i)%x%v, links(i)%y%v, links(i)%phi%v], wp)
-         q%velocity(:, i) = real([links(i)%x%d, links(i)%y%d, links(i)%phi%d], wp)
-         q%acceleration(:, i) = real([links(i)%x%dd, links(i)%y%dd, links(i)%phi%dd], wp)
+         motion = motion_of(links(i))
+         q%position(:, i) = real(motion(:, 0), wp)
+         q%velocity(:, i) = real(motion(:, 1), wp)
+         q%acceleration(:, i) = real(motion(:, 2), wp)
       end do
    end subroutine move_exactly
 

@@ -7,6 +7,7 @@ module bench_tables
    use motion, only: motion_t, new_motion
    use study, only: seconds
    use bench_tools, only: spread_t, spread_of, slope, figure
+   use bench_chains, only: size_t
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn, &
       instant_of
    use bench_timing, only: job_t, measure
@@ -18,11 +19,6 @@ module bench_tables
    !> Seconds of one measurement, at least: many clock ticks, yet often less than what another process is given at once.
    real(wp), parameter :: least = 0.003_wp
    real(wp), parameter :: nano = 1.0e9_wp
-
-   type :: size_t
-      character(7) :: kind
-      integer :: n
-   end type size_t
 
 contains
 

@@ -15,6 +15,7 @@ program hard
    use analysis, only: analysis_t, make_analysis, advance
    use closed_forms_dyads, only: body_t
    use motion_errors, only: exactly_away
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    use hard_condition, only: condition_t, measure
    use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, exact_links
    implicit none
@@ -27,11 +28,11 @@ program hard
    !> Results of which a condition leaves nothing: beyond this, a mark is right.
    real(qp), parameter :: nothing_left = 1.0e-2_qp
    !> Of one scene.
-   type :: certificate_counts_t
+   type :: scene_errors_t
       integer :: flagged = 0
       real(qp) :: condition = 0.0_qp, worst(0:2) = 0.0_qp
-   end type certificate_counts_t
-   integer :: passed = 0, failed = 0
+   end type scene_errors_t
+   type(certificate_counts_t) :: tally
    logical :: short
    character(500) :: argument
    integer :: i
@@ -48,8 +49,7 @@ program hard
    call judge_change_points()
    call judge_angles()
    call judge_sizes()
-   print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1, quiet=.true.
+   call conclude(tally)
 
 contains
 
@@ -147,7 +147,7 @@ contains
       type(scene_t), intent(in) :: s
       type(analysis_t) :: a
       type(motion_t) :: q
-      type(certificate_counts_t) :: tally
+      type(scene_errors_t) :: errors
       real(wp) :: before(size(s%m%links))
       integer :: k
 
@@ -157,29 +157,29 @@ contains
          before = q%position(3, :)
          call advance(a, s%at(k), q)
          if (k > 1) call look_at_turns(exact_links(s, s%at(k)), abs(s%at(k) - s%at(k - 1)), q%position(3, :) - before, &
-            tally)
+            errors)
          ! The first three, every fourth and the last: the condition is the larger part of the time. Every fourth from
          ! the third has both change points of NEARLY A PARALLELOGRAM.
          if (short .and. size(s%at) > 9 .and. k > 3 .and. k < size(s%at) .and. mod(k, 4) /= 3) cycle
-         call judge_instant(s, s%at(k), q, tally)
+         call judge_instant(s, s%at(k), q, errors)
       end do
-      call get_motion_of(s, tally)
+      call print_errors(s, errors)
    end subroutine judge
 
    !> An angle goes on from where it was: in short steps none is brought back by whole turns.
-   subroutine look_at_turns(exact, interval, turned, tally)
+   subroutine look_at_turns(exact, interval, turned, errors)
       type(body_t), intent(in) :: exact(:)
       real(wp), intent(in) :: interval, turned(:)
-      type(certificate_counts_t), intent(inout) :: tally
+      type(scene_errors_t), intent(inout) :: errors
 
-      if (maxval(abs(exact%phi%d))*interval < 1.0_qp .and. any(abs(turned) > pi)) tally%worst = huge(1.0_qp)
+      if (maxval(abs(exact%phi%d))*interval < 1.0_qp .and. any(abs(turned) > pi)) errors%worst = huge(1.0_qp)
    end subroutine look_at_turns
 
-   subroutine judge_instant(s, t, q, tally)
+   subroutine judge_instant(s, t, q, errors)
       type(scene_t), intent(in) :: s
       real(wp), intent(in) :: t
       type(motion_t), intent(in) :: q
-      type(certificate_counts_t), intent(inout) :: tally
+      type(scene_errors_t), intent(inout) :: errors
       type(body_t) :: exact(size(s%m%links))
       real(qp) :: allowed(3, size(s%m%links), 0:2)
       logical :: exists
@@ -187,31 +187,30 @@ contains
       exact = exact_links(s, t)
       call find_allowed(s, exact, t, allowed, exists)
       if (.not. any(q%flag == [flag_none, flag_stroke])) then
-         tally%flagged = tally%flagged + 1
+         errors%flagged = errors%flagged + 1
          if (exists) exists = maxval(allowed(:, :, 1))*epsilon(1.0_wp) <= nothing_left*fastest(exact)
-         if (exists) tally%worst = huge(1.0_qp)
+         if (exists) errors%worst = huge(1.0_qp)
       else if (.not. exists) then
          ! Of a singular position there are no rates: a mark is missing.
-         tally%worst = huge(1.0_qp)
+         errors%worst = huge(1.0_qp)
       else
-         tally%condition = max(tally%condition, maxval(allowed(:2, :, 0))/characteristic_length(s%m), &
+         errors%condition = max(errors%condition, maxval(allowed(:2, :, 0))/characteristic_length(s%m), &
             maxval(allowed(3, :, 0)))
-         tally%worst = max(tally%worst, ratios(q, exact, allowed))
+         errors%worst = max(errors%worst, ratios(q, exact, allowed))
       end if
    end subroutine judge_instant
 
-   subroutine get_motion_of(s, tally)
+   subroutine print_errors(s, errors)
       type(scene_t), intent(in) :: s
-      type(certificate_counts_t), intent(in) :: tally
+      type(scene_errors_t), intent(in) :: errors
       logical :: good
 
-      good = all(tally%worst <= bound)
-      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), tally%flagged, &
-         tally%condition, min(tally%worst, 1.0e7_qp), trim(merge('       ', ' FAILED', good))
+      good = all(errors%worst <= bound)
+      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), errors%flagged, &
+         errors%condition, min(errors%worst, 1.0e7_qp), trim(merge('       ', ' FAILED', good))
       flush (output_unit)
-      passed = passed + merge(1, 0, good)
-      failed = failed + merge(0, 1, good)
-   end subroutine get_motion_of
+      call count_one(tally, good, s%name)
+   end subroutine print_errors
 
    !> (3, links, 0:2) what is divided by; `exists`: the position is not singular.
    subroutine find_allowed(s, exact, t, allowed, exists)

@@ -6,10 +6,11 @@
 !>    matrix_1987 short     rates against the theory, judged; the last line is `N passed, N failed`
 program matrix_1987
    use rates_1987, only: rates_table, constants_table, picture_numbers, judge_rates
+   use deck_tally, only: certificate_counts_t, conclude
    use runs_1987, only: basins_table, counts_table, decks_table, times_table
    implicit none
    character(16) :: part
-   integer :: passed, failed
+   type(certificate_counts_t) :: tally
 
    call get_command_argument(1, part)
    select case (part)
@@ -24,9 +25,8 @@ program matrix_1987
    case ('picture')
       call picture_numbers()
    case ('short')
-      call judge_rates(passed, failed)
-      print '(i0, a, i0, a)', passed, ' passed, ', failed, ' failed'
-      if (failed > 0) stop 1, quiet=.true.
+      call judge_rates(tally)
+      call conclude(tally)
    case default
       error stop 'MATRIX_1987: WHICH PART?'
    end select

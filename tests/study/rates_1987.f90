@@ -3,6 +3,7 @@
 module rates_1987
    use kinds, only: wp
    use quad_jet, only: degree_q
+   use deck_tally, only: certificate_counts_t, count_one
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
    use iteration_1987, only: by_print, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, rate_measured, &
       order_measured, run_t, iterate_from, went_right
@@ -171,32 +172,30 @@ contains
 
    !> At every 15 degrees: measurement and theory agree; from close by the iteration arrives where the theory says less
    !> than 1, and nowhere else; Newton's order is 2.
-   subroutine judge_rates(passed, failed)
-      integer, intent(out) :: passed, failed
+   subroutine judge_rates(tally)
+      type(certificate_counts_t), intent(inout) :: tally
       type(scene_t) :: s
       integer :: i, k, variant
 
-      passed = 0
-      failed = 0
       do i = 1, size(scene_names)
          s = new_scene(i)
          do variant = by_print, by_step
             do k = 0, 345, 15
-               call judge_one(s, variant, k, passed, failed)
+               call judge_one(s, variant, k, tally)
             end do
          end do
          do k = 0, 345, 15
             ! The next term of the error, 1e-3 of the second, and its factor of some units.
-            call count_one(abs(order_measured(s, by_tangent, k) - 2.0_wp) <= 0.02_wp, s, by_tangent, k, 'order 2', &
-               passed, failed)
+            call count_one(tally, abs(order_measured(s, by_tangent, k) - 2.0_wp) <= 0.02_wp, &
+               scene_text(s, by_tangent, k)//'order 2')
          end do
       end do
    end subroutine judge_rates
 
-   subroutine judge_one(s, variant, angle, passed, failed)
+   subroutine judge_one(s, variant, angle, tally)
       type(scene_t), intent(inout) :: s
       integer, intent(in) :: variant, angle
-      integer, intent(inout) :: passed, failed
+      type(certificate_counts_t), intent(inout) :: tally
       !> Relative, and what rounding (1e-16 of 1e-6 a step, times a condition of 100) and the square of the error leave.
       real(wp), parameter :: tolerance = 0.05_wp, rounding = 1.0e-3_wp
       !> At a rate of 0.98 an error of 0.01 takes 1300 iterations to the rounding level.
@@ -207,29 +206,22 @@ contains
       expected = rate_by_theory(s, variant, angle)
       found = rate_measured(s, variant, angle, steps)
       ! Beside a place where A is singular it has an inverse, which throws the iteration far away.
-      call count_one(merge(found < 0.0_wp .or. found > 1.0e3_wp, abs(found - expected) <= tolerance*expected &
-         + rounding, &
-         expected < 0.0_wp), s, variant, angle, 'the rate is that of the theory', passed, failed)
+      call count_one(tally, merge(found < 0.0_wp .or. found > 1.0e3_wp, &
+         abs(found - expected) <= tolerance*expected + rounding, expected < 0.0_wp), &
+         scene_text(s, variant, angle)//'the rate is that of the theory')
       ! So close to 1 neither end would come.
       if (abs(expected - 1.0_wp) < 0.02_wp) return
       run = iterate_from(s, variant, exact(s, angle - 1), angle, limit)
-      call count_one((run%ended == went_right) .eqv. (expected >= 0.0_wp .and. expected < 1.0_wp), s, variant, angle, &
-         'it arrives where the rate is below 1', passed, failed)
+      call count_one(tally, (run%ended == went_right) .eqv. (expected >= 0.0_wp .and. expected < 1.0_wp), &
+         scene_text(s, variant, angle)//'it arrives where the rate is below 1')
    end subroutine judge_one
 
-   subroutine count_one(right, s, variant, angle, what, passed, failed)
-      logical, intent(in) :: right
+   !> What is judged: the mechanism, the references, the crank's angle.
+   function scene_text(s, variant, angle) result(text)
       type(scene_t), intent(in) :: s
       integer, intent(in) :: variant, angle
-      character(*), intent(in) :: what
-      integer, intent(inout) :: passed, failed
+      character(60) :: text
 
-      if (right) then
-         passed = passed + 1
-      else
-         failed = failed + 1
-         print '(5a, i0, 2a)', 'FAILED: ', trim(s%name), ', ', trim(variant_names(variant)), ', crank at ', &
-            angle, ' deg: ', what
-      end if
-   end subroutine count_one
+      write (text, '(4a, i0, a)') trim(s%name), ', ', trim(variant_names(variant)), ', crank at ', angle, ' deg: '
+   end function scene_text
 end module rates_1987

@@ -5,10 +5,9 @@ module runs_1987
    use motion, only: motion_t, new_motion, flag_none
    use analysis, only: analysis_t, make_analysis, advance
    use bench_scenes, only: bench_t => scene_t, new_bench => new_scene, by_method, by_closed_form, move_exactly, &
-      steps_of_turn
+      steps_of_turn, gap_t, widen
    use bench_timing, only: job_t, measure
    use bench_tools, only: figure
-   use plane_vectors, only: degree
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
    use iteration_1987, only: by_print, by_tangent, variant_names, run_t, iterate_from, went_right, went_wrong
    implicit none
@@ -108,8 +107,8 @@ contains
       type(bench_t) :: s
       type(analysis_t) :: a
       type(motion_t) :: found, there
+      type(gap_t) :: g
       integer, allocatable :: iterations(:)
-      real(wp) :: error(3)
       character(13) :: text
       integer :: k
 
@@ -117,36 +116,20 @@ contains
       call make_analysis(a, by_method(s, method))
       found = new_motion(size(s%m%links))
       there = found
-      error = 0.0_wp
       iterations = [integer ::]
       do k = 0, instant_count(s%m) - 1
          call advance(a, instant(s%m, k), found)
          if (found%flag /= flag_none) cycle
          iterations = [iterations, a%convergence%iterations]
          call move_exactly(s, instant(s%m, k), there)
-         error(1) = max(error(1), largest(s, found%position - there%position, .true.))
-         error(2) = max(error(2), largest(s, found%velocity - there%velocity, .false.)/s%rate)
-         error(3) = max(error(3), largest(s, found%acceleration - there%acceleration, .false.)/s%rate**2)
+         call widen(s, found, there, .true., g)
       end do
       k = size(iterations)
       text = deck
       if (k == 0) print '(1x, a13, i4, 2x, a6, i10, i8)', text, set, name, instant_count(s%m), k
       if (k > 0) print '(1x, a13, i4, 2x, a6, i10, i8, f9.1, i4, 3es10.1)', text, set, name, &
-         instant_count(s%m), k, real(sum(iterations), wp)/k, maxval(iterations), error
+         instant_count(s%m), k, real(sum(iterations), wp)/k, maxval(iterations), g%worst
    end subroutine deck_row
-
-   !> The largest of the differences `d` (3, links), angles to a whole turn where `turns`.
-   real(wp) function largest(s, d, turns)
-      type(bench_t), intent(in) :: s
-      real(wp), intent(in) :: d(:, :)
-      logical, intent(in) :: turns
-      real(wp), parameter :: turn = 360.0_wp*degree
-      real(wp) :: phi(size(d, 2))
-
-      phi = d(3, :)
-      if (turns) phi = phi - turn*anint(phi/turn)
-      largest = max(maxval(abs(d(:2, :)))/s%length, maxval(abs(phi)))
-   end function largest
 
    !> Time of a step as a ratio to the closed form and to METHOD DENSE, in steps of 0.1 and 10 degrees.
    subroutine times_table()
