@@ -30,6 +30,19 @@ conclude() {
    [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }
 
+# by_libraries NAME DECK LISTING: the deck has the same listing with the reference LAPACK and with OpenBLAS, where both are installed
+lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
+openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
+both=no
+[ -e "${lapack%%:*}/liblapack.so.3" ] && [ -e "${lapack##*:}/libblas.so.3" ] && [ -e $openblas/libopenblas.so.0 ] && both=yes
+by_libraries() {
+   [ $both = yes ] || return 0
+   for library in $lapack $openblas; do
+      LD_LIBRARY_PATH=$library "$kinmat" "$2" > "$w/other.out" 2> "$w/other.err"
+      same "$1: by ${library##*/}" "$3" "$w/other.out"
+   done
+}
+
 # card NAME A B C R1 R2 R3: one card of a deck
 card() {
    card=$1
