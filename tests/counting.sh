@@ -66,12 +66,19 @@ with() {
       { print }' "input/$deck.deck"
 }
 
+# ends NAME STATUS ARGUMENT...: the command ends with this status; $w/out and $w/err have what it prints
+ends() {
+   ended=$1; expected_status=$2
+   shift 2
+   "$kinmat" "$@" > "$w/out" 2> "$w/err"
+   equal "$ended: status" "$expected_status" $?
+}
+
 # rejected NAME STATUS WORDS ARGUMENT...: the command ends with this status and these words, and prints no listing
 rejected() {
    name=$1; status=$2; words=$3
    shift 3
-   "$kinmat" "$@" > "$w/out" 2> "$w/err"
-   equal "$name: status" "$status" $?
+   ends "$name" "$status" "$@"
    equal "$name: sentence" "$words" "$(cat "$w/err")"
    equal "$name: no listing" '' "$(cat "$w/out")"
 }

@@ -150,8 +150,7 @@ equal 'a dyad beside a change point is at no limit' ' *** THE MOTION IS FOLLOWED
 # refusal NAME CARD CODE: the deck stroke with this card
 refusal() {
    with stroke "$2" > "$w/deck"
-   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" 1 $?
+   ends "$1" 1 "$w/deck"
    equal "$1: code" "$3" "$(sed -n 's/^ [*]* *\(E[0-9][0-9][0-9]\) .*/\1/p' "$w/err")"
 }
 refusal 'a ground link' "$(card EXTREMES LINKS BASE)" E071
@@ -161,7 +160,6 @@ refusal 'no such pair' "$(card EXTREMES PAIRS NONE)" E053
 refusal 'a negative distance' "$(card EXTREMES LINKS CRANK '' '' -1.0)" E036
 refusal 'ranges with a field' "$(card RANGE CRANK)" E019
 sed -e 's/^TIME .*/AT                              1.0/' input/stroke.deck > "$w/deck"
-"$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-equal 'no TIME card' 1 $?
+ends 'no TIME card' 1 "$w/deck"
 equal 'no TIME card: codes' 'E098 E098 E098' "$(sed -n 's/^ [*]* *\(E[0-9][0-9][0-9]\) .*/\1/p' "$w/err" | tr '\n' ' ' | sed 's/ $//')"
 conclude

@@ -141,8 +141,7 @@ equal 'ruler' 'CYLINDERPOINT-P POINT-Q PAIR    LEAST           GREATEST' "$("$ki
 # refused NAME SENTENCE: the deck on standard input
 refused() {
    cat > "$w/refused.deck"
-   "$kinmat" "$w/refused.deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" 1 $?
+   ends "$1" 1 "$w/refused.deck"
    equal "$1: sentence" "$2" "$(sed -n 's/^ [*][*][*] \(E[0-9]*\)  CARD [0-9]*  COLUMN [0-9]*  FIELD [-A-Z0-9]*: *\("[A-Z*]*"\)* */\1 /p' "$w/err")"
 }
 ram=$(card CYLINDER P Q RAM)

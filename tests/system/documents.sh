@@ -61,8 +61,7 @@ for document in $documents; do
          file=${words%% *} status=${words#* }
          [ "$status" = "$words" ] && status=0
          [ -n "$file" ] && cp "$block" "$place/run/$file"
-         "$kinmat" "$block" > "$w/out" 2> "$w/err"
-         equal "$name: status" "$status" $?
+         ends "$name" "$status" "$block"
          equal "$name: standard error" '' "$(cat "$w/err")" ;;
       layout)
          "$kinmat" --ruler "$words" | head -n 2 > "$w/out"
@@ -74,8 +73,7 @@ for document in $documents; do
          equal "$name" '' "$(in_order "$block" "$w/out")" ;;
       refusal)
          awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' "${words%% *}" | sed "${words#* }" > "$w/deck"
-         "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-         equal "$name: status" 1 $?
+         ends "$name" 1 "$w/deck"
          same "$name" "$block" "$w/err" ;;
       sh)
          [ "$document" = docs/many_sets.md ] && continue

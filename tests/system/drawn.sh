@@ -170,8 +170,7 @@ through() {
    card END
 }
 through '' "$(card DRIVE SLIDE CYL '' '' -0.3)" "$(card TIME 10 '' '' 0.0 10.0)" RANGE CIRCUITS "$(card LANG PL)" > "$w/deck"
-"$kinmat" "$w/deck" > "$w/out"
-equal 'length 0: status' 2 $?
+ends 'length 0' 2 "$w/deck"
 equal 'length 0: the limit' 1 "$(grep -c 'SILOWNIK CYL: DLUGOSC 0, DLA SUWU PRZEZ 0 UZYJ PRISM' "$w/out" | awk '{ print ($1 > 0) }')"
 equal 'length 0: RANGE and circuits' '0.000000000 4.000000000' "$(awk '/ZAKRES(Y)? / { on = 1 } on && /^   (MIN|MAX)/ { printf "%s ", $2 }' "$w/out" | sed 's/ $//')"
 through '' "$(card DRIVE SLIDE CYL '' -0.5 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"

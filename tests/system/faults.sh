@@ -50,8 +50,7 @@ said() { awk -v on_purpose="$on_purpose" '/ S (IS LESS THAN|JEST MNIEJSZE NIZ) /
 # takes long and runs what it has run for the check before it
 builds=both
 told() {
-   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" "$2" $?
+   ends "$1" "$2" "$w/deck"
    equal "$1: words" "$3" "$(grep -vE "$on_purpose" "$w/err"; said "$w/out")"
    equal "$1: NaN, Inf or asterisks" '' "$(grep -nEiw 'nan|inf|infinity|[*]{4,}' "$w/out")"
    if [ "$builds" = both ]; then
@@ -659,8 +658,7 @@ changed 1
 # forgiven NAME AWK REMARKS
 forgiven() {
    changed "$2"
-   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" 0 $?
+   ends "$1" 0 "$w/deck"
    equal "$1: standard error" '' "$(cat "$w/err")"
    equal "$1: remarks" "$3" "$(sed -n '/^ STRUCTURE/q;/^ ---/p' "$w/out")"
    sed -n '/^ STRUCTURE/,$p' "$w/out" > "$w/tables"
@@ -680,8 +678,7 @@ forgiven 'a title with accents' '/^TITLE/ { $0 = "TITLE   wybaczaj\304\205cy" } 
    ' --- CARD 1  COLUMN 17: THE TITLE IS PRINTED WITH ? FOR LETTERS THAT ARE NOT ASCII'
 equal 'a title without its accents' 1 "$(grep -c '   TITLE   wybaczaj?cy$' "$w/out")"
 changed '/^DRIVE/ { print "GROUND  WALL"; print "LINK    IDLE"; print "LANG    PL" } 1'
-"$kinmat" "$w/deck" > "$w/out"
-equal 'links without a use, in Polish: status' 0 $?
+ends 'links without a use, in Polish' 0 "$w/deck"
 equal 'links without a use, in Polish' ' --- KARTA 18  KOLUMNA 9: "WALL" OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA
  --- KARTA 19  KOLUMNA 9: "IDLE" OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA' "$(grep '^ ---' "$w/out")"
 
@@ -690,8 +687,7 @@ for lang in EN PL; do
    awk -v lang=$lang '/^UNITS/ { print; printf "%-8s%s\n", "LANG", lang; next }
       /^TIME/ { print "RANGE\nCIRCUITS\nASSEMBLY" } { gsub(/BAR-[1-3][1-3]  /, "&@"); gsub(/  @/, "-X") } 1' \
       input/dixon.deck > "$w/deck"
-   "$kinmat" "$w/deck" > "$w/out"
-   equal "long names, $lang: status" 0 $?
+   ends "long names, $lang" 0 "$w/deck"
    equal "long names, $lang: lines over 120 columns" '' "$(awk 'length > 120' "$w/out")"
    mv "$w/out" "$w/$lang"
 done
@@ -751,8 +747,7 @@ equal 'a remark before errors of the structure' ' --- CARD 18  COLUMN 9: "TIP" I
 # explained NAME AWK CARD SENTENCE: the sentence that is said, and the layout of the card
 explained() {
    changed "$2"
-   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" 1 $?
+   ends "$1" 1 "$w/deck"
    equal "$1: standard output" '' "$(cat "$w/out")"
    equal "$1: words" " *** $4
  LAYOUT    |$("$kinmat" --ruler "$3" | sed -n 2p)" "$(grep -vE '^( CARD| +[|])' "$w/err")"

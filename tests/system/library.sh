@@ -33,8 +33,7 @@ grep -v '^DRIVE' input/four_bar.deck > "$w/loose.deck"
 printf 'A\rB\n' > "$w/return.deck"
 : > "$w/empty.deck"
 for deck in label loose empty; do
-   "$kinmat" "$w/$deck.deck" > "$w/out" 2> "$w/err"
-   equal "$deck: it is rejected" 1 $?
+   ends "$deck: it is rejected" 1 "$w/$deck.deck"
    "$w/library" table "$w/$deck.deck" > "$w/found"
    equal "$deck: status" 1 $?
    equal "$deck: message" "$(sed '1s/^ [*]* //' "$w/err")" "$(sed '1s/^ [*]* //' "$w/found")"

@@ -366,8 +366,7 @@ equal 'no centrodes without POLE' 0 "$(grep -c 'class="centrode"' "$w/four_bar.s
 # What has no position is not drawn: of this four-bar the crank alone.
 sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/none.deck"
 sed 's/^TIME.*/TIME    3                       0.0             1.0/; /^AT/d' "$w/none.deck" > "$w/nowhere.deck"
-"$kinmat" "$w/nowhere.deck" --svg "$w/none.svg" > "$w/out" 2> "$w/err"
-equal 'no position: status' 2 $?
+ends 'no position' 2 "$w/nowhere.deck" --svg "$w/none.svg"
 equal 'no position: well-formed' '' "$(tags "$w/none.svg")"
 equal 'no position: the words' yes "$(grep -q 'class="flag".*NO POSITION FOUND' "$w/none.svg" && echo yes)"
 equal 'no position: the crank alone' 1 "$(grep -cE 'class="(bar|body)"' "$w/none.svg")"
@@ -430,8 +429,7 @@ for option in --svg --animate --dxf; do
    rejected "$option and --study" 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/own.deck" $option "$w/a" --study
    equal "$option: no file is made by what is refused" '' "$(ls "$w/a" 2> /dev/null)"
    if [ -w /dev/full ]; then
-      "$kinmat" "$w/own.deck" $option /dev/full > "$w/out" 2> "$w/err"
-      equal "$option, disk full: status" 3 $?
+      ends "$option, disk full" 3 "$w/own.deck" $option /dev/full
       equal "$option, disk full: sentence" ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)' "$(cat "$w/err")"
    fi
    # More shares than sets: a picture of nothing is still one.
@@ -442,8 +440,7 @@ for option in --svg --animate --dxf; do
 done
 # Beyond the digits of a picture's coordinates a support has no width: it has no hatch.
 sed '/^POINT   C  /s/0\.0   /1.0E16/' input/yoke_mirrored.deck > "$w/far.deck"
-"$kinmat" --quiet "$w/far.deck" --svg "$w/far.svg" > "$w/out"
-equal 'a support very far away: status' 2 $?
+ends 'a support very far away' 2 --quiet "$w/far.deck" --svg "$w/far.svg"
 equal 'a support very far away' '' "$(tags "$w/far.svg"; grep -iE 'nan|infinity' "$w/far.svg")"
 rejected '--svg and --animate to one file' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --animate "$w/a" --svg "$w/a"
 conclude
