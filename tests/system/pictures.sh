@@ -43,20 +43,22 @@ for bad in '<g a="-nan"/>' '<g a="1,Infinity"/>' '<g a="***"/>' '<a href="x"/>' 
    equal "a picture with $bad is found" yes "$([ -n "$(tags "$w/bad.svg")" ] && echo yes)"
 done
 
+# Awk: the value of an attribute of an element.
+value='function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }'
+# Awk: point[set, pair], the point of each joint, from a deck that is the first file.
+points='
+   function label(column,   text) { text = substr($0, column, 8); gsub(/ /, "", text); return text }
+   FILENAME == ARGV[1] {
+      if (/^REVOLUTE/) point[set + 1, label(25)] = label(9)
+      if (/^JOINT/) point[set + 1, label(9)] = label(9)
+      if (/^SLOT/) point[set + 1, label(25)] = label(17)
+      if (/^END/) set++
+      next
+   }'
 # joints DECK CSV SVG: the joints of the picture that are not where the CSV has their points; then how many there are, how many
 # blocks on guides, and how many cylinders.
 # A picture shows all links, those that no table asks for as well.
-joints() { awk -F, '
-   function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
-   FILENAME == ARGV[1] {
-      if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
-         point[set + 1, pair] = first }
-      if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
-      if ($0 ~ /^SLOT/) { pair = substr($0, 25, 8); first = substr($0, 17, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
-         point[set + 1, pair] = first }
-      if ($0 ~ /^END/) set++
-      next
-   }
+joints() { awk -F, "$value $points"'
    FILENAME == ARGV[2] { if ($4 == "POINT") { x[$1, $3, $5] = $6; y[$1, $3, $5] = $7 } ; next }
    { blocks += /class="block"/; barrels += /class="barrel"/ }
    /class="set"/ { number = value($0, "data-set"); scale = value($0, "data-scale"); t = value($0, "data-t")
@@ -75,8 +77,7 @@ joints() { awk -F, '
 # moving DECK CSV SVG: the joints of the animation that are not where the CSV has their points at its instants, by the
 # values of the animation's own lists; links that turn by half a turn at once; then how many joints and blocks there are, and
 # whether there are instants.
-moving() { awk -F, '
-   function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
+moving() { awk -F, "$value $points"'
    function inner(line) { sub(/.*[(]/, "", line); sub(/[)].*/, "", line); return line }
    function joint(line,   i, k, f, c, s, a, b, key) {
       joints++
@@ -94,15 +95,6 @@ moving() { awk -F, '
          checked++
          if (a*a + b*b > 0.01) { print "set " number " t " time[number, i] ": " line " is off by " a ", " b; return }
       }
-   }
-   FILENAME == ARGV[1] {
-      if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
-         point[set + 1, pair] = first }
-      if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
-      if ($0 ~ /^SLOT/) { pair = substr($0, 25, 8); first = substr($0, 17, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
-         point[set + 1, pair] = first }
-      if ($0 ~ /^END/) set++
-      next
    }
    FILENAME == ARGV[2] {
       if ($4 == "POINT") { x[$1, $3, $5] = $6; y[$1, $3, $5] = $7 }
@@ -149,8 +141,7 @@ done
 
 # centrodes SVG: of each centrode its width in units of length, its lines, and whether it goes through the ring of its instant
 # centre; of the first set.
-centrodes() { awk '
-   function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
+centrodes() { awk "$value"'
    function away(x, y, a, b, c, d,   s) {
       s = (c - a)*(c - a) + (d - b)*(d - b)
       s = s > 0 ? ((x - a)*(c - a) + (y - b)*(d - b))/s : 0
@@ -225,11 +216,11 @@ equal 'without centrodes' "0 $(grep -c 'class="centre"' "$w/poles.svg")" \
    "$(grep -c 'class="centrode"' "$w/rings.svg") $(grep -c 'class="centre"' "$w/rings.svg")"
 equal 'an instant centre outside takes no room' yes "$(awk -F'"' '/class="set"/ { for (i = 1; i < NF; i++) if ($i ~ /data-scale=$/) print ($(i + 1) > 0.8 ? "yes" : "no") }' "$w/wishbone.svg")"
 # An arrow has the length and direction of the velocity, in its scale; the caption has the value of the drive.
-equal 'the arrow of a velocity' yes "$(awk -F, '
+equal 'the arrow of a velocity' yes "$(awk -F, "$value"'
    FNR == NR { if (FNR == 2) { vx = $(NF - 3); vy = $(NF - 2) } ; next }
-   /class="velocity"/ { scale = $0; sub(/.*data-scale="/, "", scale); sub(/".*/, "", scale); on = 1 }
-   on && /<polyline/ { line = $0; sub(/.*points="/, "", line); split(line, from, "[ ,]") }
-   on && /<polygon/ { line = $0; sub(/.*points="/, "", line); split(line, tip, "[ ,]")
+   /class="velocity"/ { scale = value($0, "data-scale"); on = 1 }
+   on && /<polyline/ { split(value($0, "points"), from, "[ ,]") }
+   on && /<polygon/ { split(value($0, "points"), tip, "[ ,]")
       x = (tip[1] - from[1])/scale - vx; y = (from[2] - tip[2])/scale - vy
       print (x*x + y*y < (0.02/scale)^2 ? "yes" : "no " x " " y); exit }' "$w/wishbone.csv" "$w/wishbone.svg")"
 equal 'the bar of velocities is 20 below the bar of lengths' 20 "$(sed -nE 's/.*class="(scale|arrow)" points="[^,]*,([0-9.]*) .*/\1 \2/p' "$w/wishbone.svg" \
@@ -256,9 +247,9 @@ END
 DECK
 "$kinmat" "$w/gate.deck" --no-listing --svg "$w/gate.svg" --table "$w/gate.csv"
 # lengths CLASS: the lengths of the elements of a class in units of length: of a polygon its longest side
-lengths() { awk -v class="$1" '
-   /class="set"/ { scale = $0; sub(/.*data-scale="/, "", scale); sub(/".*/, "", scale) }
-   $0 ~ "class=\"" class "\"" { line = $0; sub(/.*points="/, "", line); sub(/".*/, "", line); n = split(line, p, "[ ,]"); most = 0
+lengths() { awk -v class="$1" "$value"'
+   /class="set"/ { scale = value($0, "data-scale") }
+   $0 ~ "class=\"" class "\"" { n = split(value($0, "points"), p, "[ ,]"); most = 0
       for (i = 3; i < n; i += 2) { d = sqrt((p[i] - p[i - 2])^2 + (p[i + 1] - p[i - 1])^2); if (d > most) most = d }
       printf "%.3f\n", most/scale }' "$2"; }
 least=$(awk -F, 'NR > 1 && (NR == 2 || $2 < least) { least = $2 } END { print least }' "$w/gate.csv")
