@@ -130,7 +130,15 @@ end module test_good
 END
 
 # --- what does not hold fails, with file, line, expected and found, and ends its test ------------------------------
-cat > "$work/bad/test_bad.pf" <<'END'
+bad=$work/bad/test_bad.pf
+# report NAME LINE TEXT: what the stand-in prints of a test whose assertion in this line fails
+report() { printf 'Failure in: test_bad_suite.%s\n  Location: [test_bad.pf:%d]\n%s\n\n' "$1" "$2" "$3" >> "$work/bad.expected"; }
+# fails NAME ASSERTION TEXT: a test that this assertion ends
+fails() {
+   printf '   @test\n   subroutine %s()\n      %s\n      count = count + 1\n   end subroutine %s\n\n' "$1" "$2" "$1" >> "$bad"
+   report "$1" $(($(wc -l < "$bad") - 3)) "$3"
+}
+cat > "$bad" <<'END'
 module test_bad
    use, intrinsic :: iso_fortran_env, only: real64
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
@@ -139,113 +147,62 @@ module test_bad
    integer, parameter :: wp = real64
    integer :: count = 0
 contains
-   @test
-   subroutine wrong_integer()
-      @assertEqual(1, 2)
-      count = count + 1
-      @assertEqual(10, 20)
-   end subroutine wrong_integer
-
-   @test
-   subroutine wrong_element()
-      @assertEqual([1, 2, 3], [1, 5, 4], message='elements')
-      count = count + 1
-   end subroutine wrong_element
-
-   @test
-   subroutine wrong_real()
-      @assertEqual(1.0_wp, 1.5_wp, tolerance=0.25_wp)
-      count = count + 1
-   end subroutine wrong_real
-
-   @test
-   subroutine wrong_matrix()
-      @assertEqual(0.0_wp, reshape([0.0_wp, 0.0_wp, 0.5_wp, 0.0_wp], [2, 2]))
-      count = count + 1
-   end subroutine wrong_matrix
-
-   @test
-   subroutine wrong_shape()
-      @assertEqual([1.0_wp], [1.0_wp, 1.0_wp])
-      count = count + 1
-   end subroutine wrong_shape
-
-   @test
-   subroutine wrong_string()
-      @assertEqual('abc', 'abd', message='text')
-      count = count + 1
-   end subroutine wrong_string
-
-   @test
-   subroutine wrong_blanks()
-      @assertEqual('abc', 'abc ', whitespace=KEEP_ALL)
-      count = count + 1
-   end subroutine wrong_blanks
-
-   @test
-   subroutine wrong_logical()
-      @assertEqual(.true., .false.)
-      count = count + 1
-   end subroutine wrong_logical
-
-   @test
-   subroutine not_true()
-      @assertTrue(count > 9, message='it is not so')
-      count = count + 1
-   end subroutine not_true
-
-   @test
-   subroutine not_false()
-      @assertFalse(count == 0, message='it is so')
-      count = count + 1
-   end subroutine not_false
-
-   @test
-   subroutine not_less()
-      @assertLessThan(2, 2)
-      count = count + 1
-   end subroutine not_less
-
-   @test
-   subroutine not_less_equal()
-      @assertLessThanOrEqual(2.5_wp, 2.0_wp, message='bound')
-      count = count + 1
-   end subroutine not_less_equal
-
-   @test
-   subroutine not_greater()
-      @assertGreaterThan(1, 1)
-      count = count + 1
-   end subroutine not_greater
-
-   @test
-   subroutine not_greater_equal()
-      @assertGreaterThanOrEqual(1.0_wp, 1.5_wp)
-      count = count + 1
-   end subroutine not_greater_equal
-
-   @test
-   subroutine not_finite()
-      real(wp) :: x
-
-      x = ieee_value(x, ieee_quiet_nan)
-      @assertIsFinite(x, message='NaN')
-      count = count + 1
-   end subroutine not_finite
-
-   @test
-   subroutine told_to_fail()
-      @assertFail('always')
-      count = count + 1
-   end subroutine told_to_fail
-
-   @test
-   subroutine fails_in_a_helper()
-      call helper
-      count = count + 1
-      @assertTrue(.true.)
-   end subroutine fails_in_a_helper
-
+END
+: > "$work/bad.expected"
+fails wrong_integer '@assertEqual(1, 2)' 'AssertEqual failure:
+      Expected: <1>
+        Actual: <2>
+    Difference: <1>'
+fails wrong_element "@assertEqual([1, 2, 3], [1, 5, 4], message='elements')" 'elements
+ArrayAssertEqual failure:
+      Expected: <2>
+        Actual: <5>
+    Difference: <3>
+      at index: [2]'
+fails wrong_real '@assertEqual(1.0_wp, 1.5_wp, tolerance=0.25_wp)' 'AssertEqual failure:
+      Expected: <1.0000000000000000>
+        Actual: <1.5000000000000000>
+    Difference: <0.50000000000000000> (greater than tolerance of 0.25000000000000000)'
+fails wrong_matrix '@assertEqual(0.0_wp, reshape([0.0_wp, 0.0_wp, 0.5_wp, 0.0_wp], [2, 2]))' 'ArrayAssertEqual failure:
+      Expected: <0.0000000000000000>
+        Actual: <0.50000000000000000>
+    Difference: <0.50000000000000000> (greater than tolerance of 0.0000000000000000)
+      at index: [1,2]'
+fails wrong_shape '@assertEqual([1.0_wp], [1.0_wp, 1.0_wp])' 'Arrays not conformable failure:
+    Expected shape: [1]
+      Actual shape: [2]'
+fails wrong_string "@assertEqual('abc', 'abd', message='text')" 'text String assertion failed:
+    expected: <"abc">
+   but found: <"abd">
+  first diff:   --^'
+fails wrong_blanks "@assertEqual('abc', 'abc ', whitespace=KEEP_ALL)" 'String assertion failed:
+    expected: <"abc">
+   but found: <"abc ">
+  first diff:   ---^'
+fails wrong_logical '@assertEqual(.true., .false.)' 'AssertEquivalent failure:
+    Expected: <T>
+    Actual:   <F>'
+fails not_true "@assertTrue(count > 9, message='it is not so')" 'it is not so'
+fails not_false "@assertFalse(count == 0, message='it is so')" 'it is so'
+fails not_less '@assertLessThan(2, 2)' 'AssertLessThan failure:
+              LHS: <2>
+    not less than: <2>'
+fails not_less_equal "@assertLessThanOrEqual(2.5_wp, 2.0_wp, message='bound')" 'bound
+AssertLessThanOrEqual failure:
+                          LHS: <2.5000000000000000>
+    not less than or equal to: <2.0000000000000000>'
+fails not_greater '@assertGreaterThan(1, 1)' 'AssertGreaterThan failure:
+                 LHS: <1>
+    not greater than: <1>'
+fails not_greater_equal '@assertGreaterThanOrEqual(1.0_wp, 1.5_wp)' 'AssertGreaterThanOrEqual failure:
+                             LHS: <1.0000000000000000>
+    not greater than or equal to: <1.5000000000000000>'
+fails not_finite "@assertIsFinite(ieee_value(1.0_wp, ieee_quiet_nan), message='NaN')" NaN
+fails told_to_fail "@assertFail('always')" always
+fails not_all_true "@assertTrue([.true., .false.], message='one of two')" 'one of two'
+fails not_all_false "@assertFalse([.true., .false.], message='two of two')" 'two of two'
+first=$(($(wc -l < "$bad") + 1))
+cat >> "$bad" <<'END'
    subroutine helper
       @assertEqual(1 + &
                    1, 3)
@@ -253,16 +210,11 @@ contains
    end subroutine helper
 
    @test
-   subroutine not_all_true()
-      @assertTrue([.true., .false.], message='one of two')
+   subroutine fails_in_a_helper()
+      call helper
       count = count + 1
-   end subroutine not_all_true
-
-   @test
-   subroutine not_all_false()
-      @assertFalse([.true., .false.], message='two of two')
-      count = count + 1
-   end subroutine not_all_false
+      @assertTrue(.true.)
+   end subroutine fails_in_a_helper
 
    @test
    subroutine one_that_holds()
@@ -276,126 +228,12 @@ contains
    end subroutine none_went_on
 end module test_bad
 END
-cat > "$work/bad.expected" <<'END'
-Failure in: test_bad_suite.wrong_integer
-  Location: [test_bad.pf:11]
-AssertEqual failure:
-      Expected: <1>
-        Actual: <2>
-    Difference: <1>
-
-Failure in: test_bad_suite.wrong_element
-  Location: [test_bad.pf:18]
-elements
-ArrayAssertEqual failure:
-      Expected: <2>
-        Actual: <5>
-    Difference: <3>
-      at index: [2]
-
-Failure in: test_bad_suite.wrong_real
-  Location: [test_bad.pf:24]
-AssertEqual failure:
-      Expected: <1.0000000000000000>
-        Actual: <1.5000000000000000>
-    Difference: <0.50000000000000000> (greater than tolerance of 0.25000000000000000)
-
-Failure in: test_bad_suite.wrong_matrix
-  Location: [test_bad.pf:30]
-ArrayAssertEqual failure:
-      Expected: <0.0000000000000000>
-        Actual: <0.50000000000000000>
-    Difference: <0.50000000000000000> (greater than tolerance of 0.0000000000000000)
-      at index: [1,2]
-
-Failure in: test_bad_suite.wrong_shape
-  Location: [test_bad.pf:36]
-Arrays not conformable failure:
-    Expected shape: [1]
-      Actual shape: [2]
-
-Failure in: test_bad_suite.wrong_string
-  Location: [test_bad.pf:42]
-text String assertion failed:
-    expected: <"abc">
-   but found: <"abd">
-  first diff:   --^
-
-Failure in: test_bad_suite.wrong_blanks
-  Location: [test_bad.pf:48]
-String assertion failed:
-    expected: <"abc">
-   but found: <"abc ">
-  first diff:   ---^
-
-Failure in: test_bad_suite.wrong_logical
-  Location: [test_bad.pf:54]
-AssertEquivalent failure:
-    Expected: <T>
-    Actual:   <F>
-
-Failure in: test_bad_suite.not_true
-  Location: [test_bad.pf:60]
-it is not so
-
-Failure in: test_bad_suite.not_false
-  Location: [test_bad.pf:66]
-it is so
-
-Failure in: test_bad_suite.not_less
-  Location: [test_bad.pf:72]
-AssertLessThan failure:
-              LHS: <2>
-    not less than: <2>
-
-Failure in: test_bad_suite.not_less_equal
-  Location: [test_bad.pf:78]
-bound
-AssertLessThanOrEqual failure:
-                          LHS: <2.5000000000000000>
-    not less than or equal to: <2.0000000000000000>
-
-Failure in: test_bad_suite.not_greater
-  Location: [test_bad.pf:84]
-AssertGreaterThan failure:
-                 LHS: <1>
-    not greater than: <1>
-
-Failure in: test_bad_suite.not_greater_equal
-  Location: [test_bad.pf:90]
-AssertGreaterThanOrEqual failure:
-                             LHS: <1.0000000000000000>
-    not greater than or equal to: <1.5000000000000000>
-
-Failure in: test_bad_suite.not_finite
-  Location: [test_bad.pf:99]
-NaN
-
-Failure in: test_bad_suite.told_to_fail
-  Location: [test_bad.pf:105]
-always
-
-Failure in: test_bad_suite.fails_in_a_helper
-  Location: [test_bad.pf:117]
-AssertEqual failure:
+report fails_in_a_helper $((first + 1)) 'AssertEqual failure:
       Expected: <2>
         Actual: <3>
-    Difference: <1>
-
-Failure in: test_bad_suite.not_all_true
-  Location: [test_bad.pf:124]
-one of two
-
-Failure in: test_bad_suite.not_all_false
-  Location: [test_bad.pf:130]
-two of two
-
-Failure in: test_bad_suite.none_went_on
-  Location: [test_bad.pf:142]
-after a continued annotation
-
-1 passed, 20 failed
-END
+    Difference: <1>'
+report none_went_on $((first + 21)) 'after a continued annotation'
+echo '1 passed, 20 failed' >> "$work/bad.expected"
 
 # --- a program that ends early, by itself or by a trap, has not passed ---------------------------------------------
 cat > "$work/stops/test_stops.pf" <<'END'
