@@ -1,11 +1,9 @@
 # To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
-# a point, whatever the user's language. `kinmat` and `debug` are the command in both builds, from whatever directory it is
-# called; `w` is an empty directory for the files of the test.
+# a point, whatever the user's language. `kinmat` and `debug` are the command in both builds; `w` is an empty directory for
+# the files of the test. All are paths from the root, for scripts that go elsewhere.
 BUILD=${BUILD:-build}
-case $BUILD in
-/*) kinmat=$BUILD/kinmat debug=$BUILD/debug/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat debug=$PWD/$BUILD/debug/kinmat ;;
-esac
+case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
+kinmat=$BUILD/kinmat debug=$BUILD/debug/kinmat
 w=$BUILD/$(basename "$0" .sh)
 rm -rf "$w" && mkdir -p "$w" || exit 3
 LC_ALL=C

@@ -151,26 +151,6 @@ static int reads(int n, int decks, char **path) {
    return 0;
 }
 
-/* steps N DECK: N steps over the times of the deck, and nothing else, for measurements. */
-static int steps(int n, const char *path) {
-   char *text = text_of(path);
-   int i, status;
-   double ends[2], *row, *t;
-   kinmat *k = kinmat_read(text, 1, &status);
-   if (status) return status;
-   i = kinmat_instants(k, NULL, 0);
-   t = malloc(i*sizeof *t);
-   kinmat_instants(k, t, i);
-   ends[0] = t[0];
-   ends[1] = t[i - 1];
-   row = malloc(kinmat_columns(k)*sizeof *row);
-   for (i = 0; i <= n; i++) kinmat_advance(k, ends[0] + (ends[1] - ends[0])*i/n, row);
-   printf("%.17g\n", row[1]);
-   free(row); free(t); free(text);
-   kinmat_free(k);
-   return 0;
-}
-
 /* calls DECK REJECTED: the calls that have a fault, and what each returns. */
 static int calls(const char *path, const char *rejected) {
    char *text = text_of(path), *bad = text_of(rejected);
@@ -243,7 +223,6 @@ int main(int argc, char **argv) {
    if (argc > 2 && !strcmp(argv[1], "table")) return table(argv[2]);
    if (argc > 3 && !strcmp(argv[1], "threads")) return threads(atoi(argv[2]), argc - 3, argv + 3);
    if (argc > 3 && !strcmp(argv[1], "reads")) return reads(atoi(argv[2]), argc - 3, argv + 3);
-   if (argc > 3 && !strcmp(argv[1], "steps")) return steps(atoi(argv[2]), argv[3]);
    if (argc > 2 && !strcmp(argv[1], "memory")) return memory(argv[2]);
    if (argc > 3 && !strcmp(argv[1], "calls")) return calls(argv[2], argv[3]);
    return 3;

@@ -3,7 +3,7 @@
 . tests/counting.sh
 
 "${MAKE:-make}" --no-print-directory BUILD="$BUILD" shared > "$w/out" 2>&1
-LIBKINMAT=$(cd "$BUILD" && pwd)/libkinmat.so.2
+LIBKINMAT=$BUILD/libkinmat.so.2
 PYTHONDONTWRITEBYTECODE=1
 export LIBKINMAT PYTHONDONTWRITEBYTECODE
 import=contrib/kinmat-import

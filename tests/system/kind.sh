@@ -56,8 +56,6 @@ for name in four_bar crank_slider; do
       equal "$name, METHOD $method: exit status" 0 $?
    done
 done
-equal 'digits of the CSV' "$digits" \
-   "$(awk -F, 'NR == 4 { sub(/E.*/, "", $8); gsub(/[^0-9]/, "", $8); print length($8) }' "$w/four_bar.csv")"
 "$BUILD/release/kind_errors" "$w"/*.deck > "$BUILD/kind_errors.txt"
 cat "$BUILD/kind_errors.txt"
 equal 'results against the closed forms' ', 0 failed' "$(sed -n '$s/.* passed//p' "$BUILD/kind_errors.txt")"

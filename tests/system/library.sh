@@ -2,12 +2,10 @@
 # The shared library: its symbols, its numbers against `kinmat --table`, threads, and calls that have a fault.
 . tests/counting.sh
 
-mkdir -p "$w"
 "${MAKE:-make}" --no-print-directory BUILD="$BUILD" shared > "$w/out" 2>&1
 equal 'make shared: status' 0 $?
-place=$(cd "$BUILD" && pwd)
-LD_LIBRARY_PATH=$place
-LIBKINMAT=$place/libkinmat.so.2
+LD_LIBRARY_PATH=$BUILD
+LIBKINMAT=$BUILD/libkinmat.so.2
 export LD_LIBRARY_PATH LIBKINMAT
 equal 'symbols of the library' "$(grep -oE '^[a-z].*[*]kinmat_[a-z]+|^(int|void|kinmat) .*kinmat_[a-z]+[(]' contrib/kinmat.h | grep -oE 'kinmat_[a-z]+' | sort)" \
    "$(nm -D --defined-only "$LIBKINMAT" | sed 's/.* //' | sort)"
@@ -93,7 +91,7 @@ equal 'a deck without memory for it' "3 'NOT ENOUGH MEMORY' 0
 
 # Nothing is lost, and nothing is used that was not set.
 if command -v valgrind > /dev/null; then
-   OPENBLAS_NUM_THREADS=1 valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible \
+   valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible \
       "$w/library" reads 6 input/jansen.deck "$w/label.deck" "$w/net_5.deck" > "$w/found" 2> "$w/err"
    equal 'memory of the library, by valgrind' '' "$(cat "$w/err")"
 else

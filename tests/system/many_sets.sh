@@ -1,8 +1,6 @@
 #!/bin/sh
 # Many sets by GNU parallel and by Slurm on this machine, where they are installed: the examples of docs/many_sets.md as they
 # stand there, a share that dies, and the whole compared with what one process writes.
-BUILD=${BUILD:-build}
-case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
 . tests/counting.sh
 
 here=$PWD

@@ -5,8 +5,6 @@
 
 home=$PWD
 cd "$w" || exit 3
-case $counts in /*) ;; *) counts=$home/$counts ;; esac
-case $BUILD in /*) ;; *) BUILD=$home/$BUILD ;; esac
 
 cp "$home/input/four_bar.deck" deck
 # A run of some minutes, whose listing is long.

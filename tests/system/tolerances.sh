@@ -2,15 +2,9 @@
 # Tolerances: sensitivities against differences of decks with changed numbers, in real128, by NEWTON, DENSE and MATRIX, in
 # other units, beside a change point and with redundant equations; the root of the sum of squares against many decks with all numbers
 # off by chance. An argument: so many of these (make tolerances: 10000).
-BUILD=${BUILD:-build}
 . tests/counting.sh
 sets=${1:-400}
-case $BUILD in
-/*) kinmat=$BUILD/kinmat quad=$BUILD/kinmat-quad ;;
-*) kinmat=$PWD/$BUILD/kinmat quad=$PWD/$BUILD/kinmat-quad ;;
-esac
-w=$BUILD/tolerances
-rm -rf "$w" && mkdir -p "$w" || exit 3
+quad=$kinmat-quad
 
 # toleranced FORMS: the first set of the deck on standard input, with a small tolerance for each number of the cards FORMS
 toleranced() {
@@ -204,32 +198,6 @@ equal 'a change out of reach: angles of the rod' '19 of 19' "$(awk -F, '
 # Poles and curves have none, which the listing says.
 awk '/^END/ { print "POLE    BASE    ROCKER"; print; exit } { print }' input/tolerances.deck > "$w/poles.deck"
 equal 'poles' ' --- POLES AND CURVES HAVE NO TOLERANCES' "$("$kinmat" "$w/poles.deck" | grep 'POLES AND CURVES')"
-
-# The same mechanism in millimetres: a thousand times the numbers.
-awk '/^(POINT|GROUND|TOLER|LINK) / {
-      line = $0
-      for (k = 1; k <= 3; k++) {
-         text = substr($0, 17 + 16 * k, 16)
-         scale = above ~ /^DRIVE/ || k == 3 ? 1 : 1000
-         if (text ~ /[0-9]/) line = substr(sprintf("%-80s", line), 1, 16 + 16 * k) sprintf("%-16.8f", text * scale) substr(sprintf("%-80s", line), 33 + 16 * k)
-      }
-      print line; above = $0; next }
-   { print; above = $0 }' input/tolerances.deck > "$w/large.deck"
-"$kinmat" --csv "$w/large.csv" "$w/large.deck" > "$w/large.lst" 2>&1
-"$kinmat" --csv "$w/small.csv" input/tolerances.deck > "$w/small.lst" 2>&1
-equal 'in millimetres' '0 off' "$(awk -F, '
-   FNR == 1 { file++; next }
-   $4 !~ / RSS/ { next }
-   file == 1 { for (c = 6; c <= 14; c++) x[$2 $4 $5, c] = $c; next }
-   { for (c = 6; c <= 14; c++) {
-        if ($c == "") continue
-        y = $c / ($4 == "PAIR RSS" || c % 3 == 2 ? 1 : 1000)
-        e = y - x[$2 $4 $5, c]; if (e < 0) e = -e
-        n++
-        if (e > 1e-8) off++ } }
-   END { print n ? off + 0 : "nothing,", "off" }' "$w/small.csv" "$w/large.csv")"
-equal 'in millimetres: shares' "$(sed -n 's/^ *\([0-9.]* %\).*/\1/p' "$w/small.lst" | md5sum)" \
-   "$(sed -n 's/^ *\([0-9.]* %\).*/\1/p' "$w/large.lst" | md5sum)"
 
 # By chance, at two instants behind one beside the estimates, which choose the assembly: the variance of each quantity over
 # the square of its root of squares is 1, within five standard errors of a variance of so many numbers. What is of second
