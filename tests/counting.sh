@@ -72,13 +72,25 @@ ends() {
    equal "$ended: status" "$expected_status" $?
 }
 
-# rejected NAME STATUS WORDS ARGUMENT...: the command ends with this status and these words, and prints no listing
-rejected() {
+# says NAME STATUS WORDS ARGUMENT...: the command ends with this status, and these words are all of its standard error
+says() {
    name=$1; status=$2; words=$3
    shift 3
    ends "$name" "$status" "$@"
    equal "$name: sentence" "$words" "$(cat "$w/err")"
-   equal "$name: no listing" '' "$(cat "$w/out")"
+}
+
+# rejected NAME STATUS WORDS ARGUMENT...: the command also prints no listing
+rejected() {
+   says "$@"
+   equal "$1: no listing" '' "$(cat "$w/out")"
+}
+
+# refused NAME WORDS: the deck on standard input is rejected; WORDS: its first error, with single blanks
+refused() {
+   cat > "$w/refused.deck"
+   ends "$1" 1 "$w/refused.deck"
+   equal "$1: words" "$2" "$(sed -n '/^ [*]* E[0-9]/{s/^ [*]* //p;q}' "$w/err" | tr -s ' ')"
 }
 
 # still_four_bar CRANK COUPLER ROCKER BASE DRIVEN PHI-CRANK PHI-COUPLER PHI-ROCKER VALUE CARD...: a four-bar at one instant,

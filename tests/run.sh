@@ -29,7 +29,7 @@ parts() {
    speed against error|70|"$MAKE" --no-print-directory study-short
    single precision|130|"$MAKE" --no-print-directory single-check
    the command|480|tests/system/command.sh
-   extremes|42|tests/system/answers.sh
+   extremes|41|tests/system/answers.sh
    extremes of laws|63|tests/fuzz/fuzz_extremes.sh --laws 40 20
    the tool of mutants|8|tests/mutants/self_test.sh
    the sources|60|tests/system/house.sh
@@ -51,7 +51,7 @@ parts() {
    what a drawing needs|55|tests/system/drawn.sh
    what is as drawn|90|tests/system/as_drawn.sh
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
-   poles and curves|36|tests/system/centres.sh
+   poles and curves|15|tests/system/centres.sh
    proofs|185|"$BUILD/release/proof_bounds" input/*.deck
    slots|10|tests/system/slots.sh
    many sets|7|tests/system/many_sets.sh

@@ -35,14 +35,14 @@ rises() {
       printf "RISE    %s\n*       %-24s0.3                     %.2f\nRISE    %s\n*       %-24s0.3                     %.2f\n", \
          law, k + 0.2, lift, law, k + 0.5, -lift }'
 }
-# ends STEPS FROM TO
-ends() { LC_ALL=C printf 'TIME    %s\n*       %-24s%s\nEND\n' "$1" "$2" "$3"; }
+# time_card STEPS FROM TO
+time_card() { LC_ALL=C printf 'TIME    %s\n*       %-24s%s\nEND\n' "$1" "$2" "$3"; }
 
 # compare NAME FROM TO STEPS FLAGGED: the deck NAME.part in STEPS steps and in fifty times as many; so many instants of
 # the first are without a position, and wherever both have one it is the same
 compare() {
-   { cat "$w/$1.part"; ends "$4" "$2" "$3"; } > "$w/$1.deck"
-   { cat "$w/$1.part"; ends $(($4*50)) "$2" "$3"; } > "$w/$1.fine.deck"
+   { cat "$w/$1.part"; time_card "$4" "$2" "$3"; } > "$w/$1.deck"
+   { cat "$w/$1.part"; time_card $(($4*50)) "$2" "$3"; } > "$w/$1.fine.deck"
    for deck in "$1" "$1.fine"; do
       "$kinmat" "$w/$deck.deck" -o "$w/$deck.lst" --csv "$w/$deck.csv" 2> "$w/$deck.err"
       echo $? >> "$w/$deck.err"
@@ -140,27 +140,10 @@ equal 'beyond a limit and back between two instants' \
 new_line='
 '
 for steps in 4 7 18 45; do
-   { cat <<'DECK'
-GROUND  BASE
-LINK    CRANK                   0.0             0.0             52.0
-LINK    ROD                     0.61            0.79            -15.0
-LINK    PISTON                  3.5
-POINT   O       BASE
-POINT   WAY     BASE
-POINT   O-CR    CRANK
-POINT   A-CR    CRANK           1.0
-POINT   A-ROD   ROD
-POINT   B-ROD   ROD             3.0
-POINT   B       PISTON
-REVOLUTEO       O-CR    PAIR-O
-REVOLUTEA-CR    A-ROD   PAIR-A
-REVOLUTEB-ROD   B       PAIR-B
-PRISM   WAY     B       GUIDE
-DRIVE   X       B               3.505615234375  0.02197265625   -0.00048828125
-PRINT   LINKS   CRANK
-UNITS   M       DEG     S
-DECK
-     ends $steps 0.0 90.0; } > "$w/deck"
+   { awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck | sed '/^POINT   G /s/ 0.5$/ 0.0/'
+     card LINK CRANK '' '' 0.0 0.0 52.0; card LINK ROD '' '' 0.61 0.79 -15.0; card LINK PISTON '' '' 3.5
+     card DRIVE X B '' 3.505615234375 0.02197265625 -0.00048828125; card PRINT LINKS CRANK
+     time_card $steps 0.0 90.0; } > "$w/deck"
    "$kinmat" "$w/deck" --csv "$w/csv" > "$w/lst" 2> "$w/err"
    # An instant on it stands there, and the next one tells the way on.
    at=$([ $((steps % 2)) -eq 1 ] || echo ' --- CHANGE POINT AT T = 45.00000 S, LINKS CRANK, ROD: THIS INSTANT IS AT THE CHANGE POINT')

@@ -135,13 +135,8 @@ run both
 equal 'both holes and lengths' 0.14323945 "$(awk -F, '$4 == "LINK RSS" { printf "%.8f", $8 }' "$w/both.csv")"
 
 # What is rejected.
-# error NAME MESSAGE: the first message of the deck on standard input
-error() {
-   made bad
-   run bad
-   equal "$1: status" 1 $status
-   equal "$1" "$2" "$(sed -n 's/^ \*\*\* //p' "$w/bad.err" | tr -s ' ' | head -n 1)"
-}
+# error NAME WORDS: as `refused`, of the cards on standard input
+error() { { card UNITS MM DEG S; cat; card END; } | refused "$@"; }
 plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 15.0)" "$turn" "$hours" |
    error 'circles apart' 'E099 CARD 17 COLUMN 33 FIELD REAL-1: "15.0" DOES NOT MEET THE OTHER LENGTH OF THIS POINT; MISSING 5.0 MM'
 plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 150.0)" "$(card LENGTH B C '' 60.0)" "$turn" "$hours" |

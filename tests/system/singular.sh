@@ -75,8 +75,8 @@ change=': VELOCITIES NOT UNIQUE'
 dead=': NO FINITE VELOCITIES'
 unclear=': NO UNIQUE VELOCITIES'
 
-# says K WORDS NAME...: by these METHODS, in m, mm and km, a set each of one run
-says() {
+# sentences K WORDS NAME...: by these METHODS, in m, mm and km, a set each of one run
+sentences() {
    k=$1; words=$2; shift 2
    deck NEWTON +00 EN "$@" > "$w/one.deck"
    for method in $METHODS; do
@@ -89,29 +89,29 @@ says() {
 }
 
 METHODS='NEWTON DENSE MATRIX'
-says 0 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram
-says 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram_later
-says 0 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" far_end
-says 0 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" near_end
-says 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle_at_rest
+sentences 0 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram
+sentences 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram_later
+sentences 0 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" far_end
+sentences 0 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" near_end
+sentences 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle_at_rest
 METHODS='NEWTON DENSE'
-says 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker
-says 0 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns
-says 1 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns_later
-says 0 "CHANGE POINT, LINKS CR+, RD+ COLLINEAR$change" far_end_turns
-says 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram_turns
-says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear" rocker_turns_out
-says 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" kite_later
-says 1 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" far_end_later
-says 1 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker_later
-says 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle
-says 0 "JACOBIAN SINGULAR, LINKS CO+, RO+ COLLINEAR$unclear" stretched
-says 0 "DEAD POINT, LINKS C3+, R3+ COLLINEAR$dead" two_dyads
-says 0 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change
+sentences 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker
+sentences 0 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns
+sentences 1 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns_later
+sentences 0 "CHANGE POINT, LINKS CR+, RD+ COLLINEAR$change" far_end_turns
+sentences 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram_turns
+sentences 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear" rocker_turns_out
+sentences 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" kite_later
+sentences 1 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" far_end_later
+sentences 1 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker_later
+sentences 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle
+sentences 0 "JACOBIAN SINGULAR, LINKS CO+, RO+ COLLINEAR$unclear" stretched
+sentences 0 "DEAD POINT, LINKS C3+, R3+ COLLINEAR$dead" two_dyads
+sentences 0 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change
 DEAD POINT, LINKS CR++, RD++ COLLINEAR$dead" parallelogram far_end
-says 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead
+sentences 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change" rocker parallelogram
-says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
+sentences 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
 CHANGE POINT, LINKS CO+++, RO+++ COLLINEAR$change
 DEAD POINT, LINKS CR++++, RD++++ COLLINEAR$dead" rocker_turns_out parallelogram parallelogram far_end

@@ -24,25 +24,9 @@ differing() {
 tests/make_deck lattice 5 18 | grep -v '^PRINT\|^END' > "$w/lattice.part"
 grep '^TIME' -A 1 "$w/lattice.part" | grep -v '^\*' > "$w/time.part"
 grep -v '^TIME' "$w/lattice.part" > "$w/bodies.part"
-cat > "$w/parallelogram.part" <<'DECK'
-LINK    CRANK                   10.0            0.0             3.12
-LINK    COUPLER                 8.0             0.03            0.0
-LINK    ROCKER                  14.0            0.0             3.12
-POINT   A0      BASE            10.0            0.0
-POINT   B0      BASE            14.0            0.0
-POINT   A0-CR   CRANK           0.0             0.0
-POINT   A-CR    CRANK           2.0             0.0
-POINT   A-CO    COUPLER         0.0             0.0
-POINT   B-CO    COUPLER         4.0             0.0
-POINT   B0-RO   ROCKER          0.0             0.0
-POINT   B-RO    ROCKER          2.0             0.0
-REVOLUTEA0      A0-CR   PAIR-A0
-REVOLUTEA-CR    A-CO    PAIR-A
-REVOLUTEB-CO    B-RO    PAIR-B
-REVOLUTEB0-RO   B0      PAIR-B0
-DRIVE   ANGLE   CRANK
-*       3.12588469033979299E+00 1.00000000000000000E+00
-DECK
+{ grep -E '^(LINK|POINT|REVOLUTE)' input/parallelogram_at.deck | sed -e 's/ 20[.]0$/ 3.12/' \
+     -e '/^LINK    COUPLER/s/1.9             0.7 /-2.0            0.03/'
+  printf 'DRIVE   ANGLE   CRANK\n*       3.12588469033979299E+00 1.00000000000000000E+00\n'; } > "$w/parallelogram.part"
 printf 'PRINT   LINKS\nEND\n' > "$w/end.part"
 cat "$w/bodies.part" "$w/parallelogram.part" "$w/time.part" "$w/end.part" > "$w/both.deck"
 cat "$w/bodies.part" "$w/time.part" "$w/end.part" > "$w/lattice.deck"
