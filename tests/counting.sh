@@ -129,6 +129,12 @@ moving_four_bar() {
    echo END
 }
 
+# inline_slider PHI-CRANK X-ROD Y-ROD PHI-ROD X-PISTON: that of input/ on the x axis, at this estimate, without drive and instants
+inline_slider() {
+   awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck | sed '/^POINT   G /s/ 0.5$/ 0.0/'
+   card LINK CRANK '' '' 0.0 0.0 "$1"; card LINK ROD '' '' "$2" "$3" "$4"; card LINK PISTON '' '' "$5"
+}
+
 # angle A B C: between the sides A and B of a triangle, opposite C, in degrees
 angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
    printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }

@@ -1,6 +1,6 @@
 !> Stand-in for the module `funit` of pFUnit 4 where pFUnit is not installed: the assertions that our tests use, with
 !> pFUnit's names, arguments and report. What it lacks does not compile, so a test that builds here builds there.
-!> The module funit_reports has the state of the run and the reports; assertions of numbers are one text for three kinds.
+!> The module funit_reports has the state of the run and the reports; assertions of logicals and numbers are one text.
 module funit_reports
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none
@@ -113,8 +113,19 @@ contains
    end function list
 end module funit_reports
 
-#define VALUE integer
+#define VALUE logical
 #define TOLERANCE
+#define IS_LOGICAL
+#define ASSERTION 'AssertEquivalent'
+module funit_logical
+#include "funit_kind.inc"
+end module funit_logical
+
+#undef VALUE
+#undef IS_LOGICAL
+#undef ASSERTION
+#define VALUE integer
+#define ASSERTION 'AssertEqual'
 module funit_integer
 #include "funit_kind.inc"
 end module funit_integer
@@ -137,6 +148,7 @@ end module funit_real128
 module funit
    use, intrinsic :: iso_fortran_env, only: output_unit
    use funit_reports
+   use funit_logical
    use funit_integer
    use funit_real64
    use funit_real128
@@ -159,7 +171,7 @@ module funit
    end interface
 
    interface assertequal
-      module procedure logical_00, logical_01, logical_11, equal_string, equal_strings
+      module procedure equal_string, equal_strings
    end interface assertequal
 
    interface asserttrue
@@ -258,50 +270,6 @@ contains
 
       call true_scalar(.not. any(condition), message, location)
    end subroutine false_array
-
-   !> Elements in array element order and the shapes; of an expected scalar there is one element.
-   subroutine equal_logical(expected, shape_expected, actual, shape_actual, message, location)
-      logical, intent(in) :: expected(:), actual(:)
-      integer, intent(in) :: shape_expected(:), shape_actual(:)
-      character(*), intent(in), optional :: message
-      type(sourcelocation), intent(in), optional :: location
-      logical :: e, a
-      integer :: k
-
-      if (.not. conform(shape_expected, shape_actual, message, location)) return
-      do k = 1, size(actual)
-         a = actual(k)
-         e = expected(min(k, size(expected)))
-         if (e .eqv. a) cycle
-         call unequal('AssertEquivalent', merge('T', 'F', e), merge('T', 'F', a), '', k, shape_actual, message, location)
-         return
-      end do
-   end subroutine equal_logical
-
-   subroutine logical_00(expected, actual, message, location)
-      logical, intent(in) :: expected, actual
-      character(*), intent(in), optional :: message
-      type(sourcelocation), intent(in), optional :: location
-
-      call equal_logical([expected], shape(expected), [actual], shape(actual), message, location)
-   end subroutine logical_00
-
-   subroutine logical_01(expected, actual, message, location)
-      logical, intent(in) :: expected
-      logical, intent(in) :: actual(:)
-      character(*), intent(in), optional :: message
-      type(sourcelocation), intent(in), optional :: location
-
-      call equal_logical([expected], shape(expected), actual, shape(actual), message, location)
-   end subroutine logical_01
-
-   subroutine logical_11(expected, actual, message, location)
-      logical, intent(in) :: expected(:), actual(:)
-      character(*), intent(in), optional :: message
-      type(sourcelocation), intent(in), optional :: location
-
-      call equal_logical(expected, shape(expected), actual, shape(actual), message, location)
-   end subroutine logical_11
 
    subroutine equal_string(expected, actual, message, location, whitespace)
       character(*), intent(in) :: expected, actual

@@ -32,17 +32,19 @@ pasted() {
       left_out { print own[key]; next } { print }' "$1"
 }
 
+# is_taken NAME DECK K: its assembly K, pasted, is the one that a run takes
+is_taken() {
+   pasted "$2" "$3" > "$w/pasted.deck"
+   equal "$1: assembly $3 is taken" "$(assemblies "$2" | sed -n "s/^ ASSEMBLY $3   DISTANCE = [0-9.]*  *//p" | sed 's/   CHOSEN.*//')" \
+      "$(assemblies "$w/pasted.deck" | sed -n 's/^ ASSEMBLY 1   DISTANCE = 0.00[0-9]*  *\(.*\)   CHOSEN BY THE ESTIMATE/\1/p')"
+}
+
 # Each assembly, pasted, is the one that a run takes: the deck of one set (the first of the deck of input/).
 # taken DECK NUMBER [SET [SED]]: changed by the sed expression
 taken() {
    awk -v set="${3:-1}" 'BEGIN { n = 1 } n == set; /^END/ { n++ }' "input/$1.deck" | sed "${4:-}" | awk '/^END/ { print "ASSEMBLY" } { print }' > "$w/$1.deck"
    equal "$1: assemblies" "$2" "$(assemblies "$w/$1.deck" | grep -c '^ ASSEMBLY ')"
-   assemblies "$w/$1.deck" | awk '/^ ASSEMBLY / { sub(/   CHOSEN.*/, ""); sub(/DISTANCE = [0-9.]*/, ""); print $0 }' > "$w/$1.rows"
-   for k in $(seq "$2"); do
-      pasted "$w/$1.deck" "$k" > "$w/pasted.deck"
-      equal "$1: assembly $k is taken" "$(sed -n "s/^ ASSEMBLY $k  *//p" "$w/$1.rows")" \
-         "$(assemblies "$w/pasted.deck" | sed -n 's/^ ASSEMBLY 1   DISTANCE = 0.00[0-9]*  *\(.*\)   CHOSEN BY THE ESTIMATE/\1/p')"
-   done
+   for k in $(seq "$2"); do is_taken "$1" "$w/$1.deck" "$k"; done
 }
 taken four_bar 2
 taken crank_slider 2
@@ -74,11 +76,7 @@ for scale in 0.1 0.003 3e-6 300.0; do
       /^(LINK|JOINT) / && (substr($0, 33, 1) substr($0, 49, 1) substr($0, 65, 1)) !~ /^ *$/ { touch++ }
       /^\*/ && (substr($0, 9, 1) substr($0, 33, 1) substr($0, 57, 1)) !~ /^ *$/ { touch++ }
       END { print n, touch + 0 }' "$w/small.lst")"
-   for k in 1 2; do
-      pasted "$w/small.deck" $k > "$w/pasted.deck"
-      equal "pasted, $scale, assembly $k" "$(sed -n "s/^ ASSEMBLY $k   DISTANCE = [0-9.]*  *//p" "$w/small.lst" | sed 's/   CHOSEN.*//')" \
-         "$(assemblies "$w/pasted.deck" | sed -n 's/^ ASSEMBLY 1   DISTANCE = 0.00[0-9]*  *\(.*\)   CHOSEN BY THE ESTIMATE/\1/p')"
-   done
+   for k in 1 2; do is_taken "numbers that touch, $scale" "$w/small.deck" $k; done
 done
 
 # Lazy tongs of four stages, driven by their height h. With n stages upward, h is (2 n - 4) times the height of a stage: n is
@@ -163,8 +161,7 @@ rows() { assemblies "$1" | awk '/^ ASSEMBLY/ { sub(/DETERMINANTS [-+.0]*/, "") }
 angles() { assemblies "$1" | awk '/^LINK/ { print substr($0, 9, 8), substr($0, 65) }'; }
 rows "$w/three_rrr_cranks.deck" > "$w/rows"
 angles "$w/three_rrr_cranks.deck" > "$w/angles"
-awk '/^(LINK|POINT|GROUND) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
-      printf "%s%-16.9E%-16.9E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' "$w/three_rrr_cranks.deck" > "$w/large.deck"
+awk -v long=6 -f tests/system/other_units.awk "$w/three_rrr_cranks.deck" > "$w/large.deck"
 rows "$w/large.deck" > "$w/large.rows"
 angles "$w/large.deck" > "$w/large.angles"
 same 'a million times as large: assemblies' "$w/rows" "$w/large.rows"

@@ -3,22 +3,10 @@
 # as many. A law that goes out and comes back within a step must be followed out and back.
 . tests/counting.sh
 
-# four_bar CRANK COUPLER ROCKER BASE PHI: a crank-driven four-bar whose crank begins at PHI, without its drive
-four_bar() {
-   LC_ALL=C awk -v a="$1" -v b="$2" -v d="$3" -v g="$4" -v phi="$5" '
-   function put(card, l, m, x, y, z) { printf "%-8s%-8s%s\n%-8s%-24.16E%-24.16E%.16E\n", card, l, m, "*", x, y, z }
-   BEGIN { x = a*cos(phi); y = a*sin(phi); e = sqrt((x - g)^2 + y^2)
-      c = (d*d + e*e - b*b)/(2*d*e); psi = atan2(y, x - g) - atan2(sqrt(1 - c*c), c)
-      print "TITLE   FOUR-BAR"
-      put("GROUND", "BASE", "", 0, 0, 0); put("LINK", "CRANK", "", 0, 0, phi)
-      put("LINK", "COUPLER", "", x, y, atan2(d*sin(psi) - y, g + d*cos(psi) - x)); put("LINK", "ROCKER", "", g, 0, psi)
-      put("POINT", "A0", "BASE", 0, 0, 0); put("POINT", "B0", "BASE", g, 0, 0)
-      put("POINT", "A0C", "CRANK", 0, 0, 0); put("POINT", "AC", "CRANK", a, 0, 0)
-      put("POINT", "AK", "COUPLER", 0, 0, 0); put("POINT", "BK", "COUPLER", b, 0, 0)
-      put("POINT", "B0R", "ROCKER", 0, 0, 0); put("POINT", "BR", "ROCKER", d, 0, 0)
-      print "REVOLUTEA0      A0C     J1\nREVOLUTEAC      AK      J2\nREVOLUTEBK      BR      J3\nREVOLUTEB0R     B0      J4"
-   }' | awk '/^POINT/ { point = 1 } /^\*/ && point { $0 = substr($0, 1, 56); point = 0 } 1'
-}
+# four_bar FOUR-BAR...: as still_four_bar, in radians, without its drive and its instant; one that rocks, and one that turns
+four_bar() { still_four_bar "$@" | sed -e 's/DEG/RAD/' -e '/^\(DRIVE\|AT\|END\)/d'; }
+rocking='2.0 1.5 1.5 4.0 CRANK 0.7 -0.1 2.28 0.7'
+turning='1.0 3.5 3.0 4.0 CRANK 0.5 0.78 1.78 0.5'
 # angle VALUE: the drive of the crank, to be followed by what is added
 angle() { printf 'DRIVE   ANGLE   CRANK\n*       %s\n' "$1"; }
 # cam RISE: in each unit of time from 0 to 4 a rise and a return, between a fifth and four fifths of it
@@ -56,32 +44,32 @@ compare() {
 }
 
 # A four-bar whose crank, from 0.7, can rise to 0.8127: cams below and beyond that, by one step a cam.
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.10; } > "$w/cam_below.part"
+{ four_bar $rocking; angle 0.7; cam 0.10; } > "$w/cam_below.part"
 compare cam_below 0.0 4.0 4 0
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.14; } > "$w/cam_beyond.part"
+{ four_bar $rocking; angle 0.7; cam 0.14; } > "$w/cam_beyond.part"
 compare cam_beyond 0.0 4.0 4 4
 equal 'cam_beyond: its limit' 'T = 0.412746 S' "$(sed -n 's/.*LIMIT OF MOTION AT //p' "$w/cam_beyond.lst" | sort -u)"
 # The same of rises by each law.
 for law in CYCLOID 3-4-5 HARMONIC PARABOLA; do
-   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.10; } > "$w/$law.below.part"
+   { four_bar $rocking; angle 0.7; rises $law 0.10; } > "$w/$law.below.part"
    compare $law.below 0.0 4.0 4 0
-   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.14; } > "$w/$law.beyond.part"
+   { four_bar $rocking; angle 0.7; rises $law 0.14; } > "$w/$law.beyond.part"
    compare $law.beyond 0.0 4.0 4 4
-   { four_bar 1 3.5 3 4 0.5; angle 0.5; rises $law 30.0; } > "$w/$law.turning.part"
+   { four_bar $turning; angle 0.5; rises $law 30.0; } > "$w/$law.turning.part"
    compare $law.turning 0.0 4.0 4 0
 done
 # A harmonic of exactly one period a step, on the same four-bar and on one whose crank turns fully.
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$w/period_below.part"
+{ four_bar $rocking; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$w/period_below.part"
 compare period_below 0.0 4.0 4 0
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC 0.14 6.2831853071795862 0.0; } > "$w/period_beyond.part"
+{ four_bar $rocking; angle 0.7; added HARMONIC 0.14 6.2831853071795862 0.0; } > "$w/period_beyond.part"
 compare period_beyond 0.0 4.0 4 4
-{ four_bar 1 3.5 3 4 0.5; angle 0.5; added HARMONIC 30.0 6.2831853071795862 0.0; } > "$w/period_turning.part"
+{ four_bar $turning; angle 0.5; added HARMONIC 30.0 6.2831853071795862 0.0; } > "$w/period_turning.part"
 compare period_turning 0.0 4.0 4 0
 # 0.001/t^2 turns the crank by a thousand radians at first, and then hardly any more.
-{ four_bar 1 3.5 3 4 1000.5; angle 0.5; added POWER 1.0E-3 -2.0; } > "$w/power.part"
+{ four_bar 1.0 3.5 3.0 4.0 CRANK 1000.5 0.56 1.89 1000.5; angle 0.5; added POWER 1.0E-3 -2.0; } > "$w/power.part"
 compare power 0.001 10.001 10 0
 # A root rises most steeply where it begins.
-{ four_bar 1 3.5 3 4 0.5; angle 0.5; added POWER 20.0 0.5; } > "$w/root.part"
+{ four_bar $turning; angle 0.5; added POWER 20.0 0.5; } > "$w/root.part"
 compare root 0.000001 4.0 4 0
 
 # Three cylinders go round a cusp between t = 0 and 1, each by little: the assembly at t = 1 is the other one. Later a
@@ -140,9 +128,7 @@ equal 'beyond a limit and back between two instants' \
 new_line='
 '
 for steps in 4 7 18 45; do
-   { awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck | sed '/^POINT   G /s/ 0.5$/ 0.0/'
-     card LINK CRANK '' '' 0.0 0.0 52.0; card LINK ROD '' '' 0.61 0.79 -15.0; card LINK PISTON '' '' 3.5
-     card DRIVE X B '' 3.505615234375 0.02197265625 -0.00048828125; card PRINT LINKS CRANK
+   { inline_slider 52.0 0.61 0.79 -15.0 3.5; card DRIVE X B '' 3.505615234375 0.02197265625 -0.00048828125; card PRINT LINKS CRANK
      time_card $steps 0.0 90.0; } > "$w/deck"
    "$kinmat" "$w/deck" --csv "$w/csv" > "$w/lst" 2> "$w/err"
    # An instant on it stands there, and the next one tells the way on.

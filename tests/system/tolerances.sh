@@ -158,30 +158,9 @@ equal 'redundant equations that do not: numbers named' yes "$(grep -c 'MECHANISM
 equal 'redundant equations that do not: no sensitivities' '' "$(grep -E '^  (WORST|RSS)' "$w/listing" | grep '[0-9]')"
 # A piston that two drives push in one way is out of reach after a change near its dead point: that contradicts no
 # equation. With the crank 1, the rod 3 and the eye at X the rod's angle has cos = (X**2 + 8)/(6 X).
-cat > "$w/pushed.deck" <<'CARDS'
-UNITS   M       DEG     S
-GROUND  BASE
-LINK    CRANK                                                   40.0
-LINK    ROD                     0.766           0.643           -13.0
-LINK    PISTON                  3.7
-POINT   O       BASE
-POINT   O-CR    CRANK
-POINT   PIN-CR  CRANK           1.0
-POINT   PIN     ROD
-POINT   EYE     ROD             3.0
-POINT   P       PISTON
-POINT   Q       PISTON          0.5
-TOLER                           0.001
-REVOLUTEO       O-CR    A
-REVOLUTEPIN-CR  PIN     B
-REVOLUTEEYE     Q       C
-PRISM   O       P       G       0.0             0.0             0.0
-DRIVE   X       P               3.0             0.5
-DRIVE   X       P               3.0             0.5
-TIME    18                      0.0             0.99
-PRINT   LINKS   ROD
-END
-CARDS
+{ inline_slider 40.0 0.766 0.643 -13.0 3.7 | sed "s/^POINT   B  .*/&\n$(card TOLER '' '' '' 0.001)/"
+  card POINT P PISTON '' -0.5; card DRIVE X P '' 3.0 0.5; card DRIVE X P '' 3.0 0.5
+  card TIME 18 '' '' 0.0 0.99; card PRINT LINKS ROD; card END; } > "$w/pushed.deck"
 "$kinmat" --csv "$w/found.csv" "$w/pushed.deck" > "$w/listing" 2>&1
 equal 'a change out of reach does not jam' 0 "$(grep -c JAMS "$w/listing")"
 equal 'a change out of reach: angles of the rod' '19 of 19' "$(awk -F, '
