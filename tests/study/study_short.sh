@@ -69,6 +69,17 @@ equal 'every second instant: what errors are compared with' ' ERRORS: AGAINST ki
 equal 'every second instant: to rounding the methods agree with the truth' '7 0' "$(rows "$w/second.txt" | awk '$3 == "ROUNDING" { n++
    for (k = 7; k <= 9; k++) bad += !($k < 1e-13) } END { print n, bad + 0 }')"
 
+# Errors are relative: in millimetres they are the same where rounding does not count. They are printed with two digits.
+awk '/^UNITS/ { sub(/M /, "MM") }
+   /^(LINK|POINT)/ { $0 = sprintf("%-32s%-16.1f%-16.1f%s", substr($0, 1, 32), substr($0, 33, 16)*1000, substr($0, 49, 16)*1000, substr($0, 65)) }
+   { print }' "$w/four_bar.deck" > "$w/millimetres.deck"
+"$kinmat" --study "$w/millimetres.deck" > "$w/millimetres.txt" 2> "$w/err"
+rows "$w/millimetres.txt" | paste -d ' ' "$w/rows" - > "$w/both"
+equal 'in millimetres: the same errors' '18 0' "$(awk '$1 != "MATRIX" { for (k = 7; k <= 9; k++) if ($k > 1e-12) {
+   n++
+   bad += !($(k + 9) > 0.9*$k && $(k + 9) < 1.1*$k)
+   } } END { print n, bad + 0 }' "$w/both")"
+
 # Beside no reference: the estimates, which are never below the true errors to rounding. MIN is printed with two digits.
 mkdir -p "$w/alone" && cp "$BUILD/kinmat" "$w/alone/"
 PATH=$w:$PATH "$w/alone/kinmat" --study "$w/four_bar.deck" > "$w/estimates.txt" 2> "$w/err"
