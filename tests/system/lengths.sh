@@ -125,6 +125,15 @@ equal 'both holes' 0.07071 "$(spread "$(card TOLER '' '' '' 0.05)")"
 equal 'one hole' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.05)")"
 equal 'each hole its own' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.04)" "$(card TOLER CRANK '' '' 0.03)")"
 equal 'both holes together' 0.00000 "$(spread "$(card TOLER BOTH '' '' 0.05)")"
+# Two cranks, mechanisms of their own, on ground joints that lengths give: P0 (0, 0), R0 (3, 0), Q1 (0, 4), Q2 (3, 4). If P0 Q1
+# grows by d, Q1 moves by (4/3, 1) d on its circle about R0, and Q2 on both of its circles by (4/3, 0) d.
+{ card UNITS MM DEG S; card GROUND BASE; card LINK FIRST; card LINK SECOND; card POINT P0 BASE; card POINT R0 BASE '' 3.0
+   card JOINT Q1 BASE FIRST 0.0 4.0; card JOINT Q2 BASE SECOND 3.0 4.0; card POINT E SECOND '' 4.0 4.0
+   card LENGTH P0 Q1 '' 4.0; card TOLER '' '' '' 0.03; card LENGTH R0 Q1 '' 5.0; card LENGTH Q1 Q2 '' 3.0; card LENGTH R0 Q2 '' 4.0
+   card DRIVE ANGLE FIRST '' 0.0 30.0; card DRIVE ANGLE SECOND '' 0.0 20.0; card AT '' '' '' 1.0; card PRINT POINTS E; card END
+} > "$w/apart.deck"
+run apart
+equal 'a length moves the ground joint of another mechanism' '0.040000 0.000000' "$(awk '/^  WORST/ { print $2, $3 }' "$w/apart.lst")"
 
 # Both holes of A together move the drawn direction of the crank, with which its drive begins: 0.1 mm*20/(20**2 + 20**2) rad.
 { book | sed -e 's/^JOINT   A .*/&\nTOLER   BOTH                    0.0             0.1/' -e 's/^\(DRIVE.*\) 30.0/\1     /'; card AT '' '' '' 0.0; card PRINT LINKS CRANK; } | made both
