@@ -12,7 +12,7 @@ parts() {
    make check|1950|tests/system/check.sh
    relations between runs|220|tests/system/relations.sh --short
    faults by name|561|tests/system/faults.sh
-   unit tests|355|"$MAKE" --no-print-directory unit
+   unit tests|352|"$MAKE" --no-print-directory unit
    units|340|tests/system/units.sh
    cards and options together|1000|tests/system/together.sh
    assemblies and runs|450|tests/system/assembly_relations.sh

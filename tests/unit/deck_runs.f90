@@ -54,8 +54,8 @@ contains
       close (unit, status='delete')
    end subroutine run_cards
 
-   !> The lines of the listing of `cards`, from its structure on, from the first one that begins with `first` to the one before that
-   !> which begins with `last`.
+   !> The lines of the listing of `cards`, from its structure on, from the first one that begins with `first` to the one
+   !> before that which begins with `last`.
    function lines_of(cards, first, last) result(text)
       character(*), intent(in) :: cards(:), first, last
       character(:), allocatable :: text
@@ -85,7 +85,8 @@ contains
       end do
    end function remarks
 
-   !> The cell of `column` in the row of instant `step` and of `name`, if `kind` is given in that of this kind; '?' without such a row.
+   !> The cell of `column` in the row of instant `step` and of `name`, if `kind` is given in that of this kind; '?'
+   !> without such a row.
    function csv_cell(r, step, name, column, kind) result(cell)
       type(run_t), intent(in) :: r
       integer, intent(in) :: step
@@ -157,12 +158,13 @@ contains
       character(*), intent(in) :: crank, rod
       character(80) :: cards(16)
 
-      cards = [row('UNITS', 'M', 'RAD', 'S'), row('GROUND', 'BASE'), row('LINK', 'CRANK', r1='0.0', r2='0.0', r3=crank), &
-         row('LINK', 'ROD', r1='0.9', r2='0.4', r3=rod), row('LINK', 'PISTON', r1='3.5', r2='0.0', r3='0.0'), &
-         row('POINT', 'O', 'BASE'), row('POINT', 'GUIDE', 'BASE'), row('POINT', 'C0', 'CRANK'), &
-         row('POINT', 'C1', 'CRANK', r1='1.0'), row('POINT', 'R0', 'ROD'), row('POINT', 'R1', 'ROD', r1='3.0'), &
-         row('POINT', 'S', 'PISTON'), row('REVOLUTE', 'O', 'C0', 'PO'), row('REVOLUTE', 'C1', 'R0', 'PC'), &
-         row('REVOLUTE', 'R1', 'S', 'PR'), row('PRISM', 'GUIDE', 'S', 'PS')]
+      cards = [row('UNITS', 'M', 'RAD', 'S'), row('GROUND', 'BASE'), &
+         row('LINK', 'CRANK', r1='0.0', r2='0.0', r3=crank), row('LINK', 'ROD', r1='0.9', r2='0.4', r3=rod), &
+         row('LINK', 'PISTON', r1='3.5', r2='0.0', r3='0.0'), row('POINT', 'O', 'BASE'), &
+         row('POINT', 'GUIDE', 'BASE'), row('POINT', 'C0', 'CRANK'), row('POINT', 'C1', 'CRANK', r1='1.0'), &
+         row('POINT', 'R0', 'ROD'), row('POINT', 'R1', 'ROD', r1='3.0'), row('POINT', 'S', 'PISTON'), &
+         row('REVOLUTE', 'O', 'C0', 'PO'), row('REVOLUTE', 'C1', 'R0', 'PC'), row('REVOLUTE', 'R1', 'S', 'PR'), &
+         row('PRISM', 'GUIDE', 'S', 'PS')]
    end function slider
 
    !> The same, moved by its piston: x = `x` + `rate` t, by METHOD `method`, at `steps` + 1 instants from 0 to `t1`.
