@@ -28,7 +28,7 @@ conclude() {
    [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }
 
-# by_libraries NAME DECK LISTING: the deck has the same listing with the reference LAPACK and with OpenBLAS, where both are installed
+# by_libraries NAME DECK LISTING: the deck has this listing with the reference LAPACK and with OpenBLAS, if both are installed
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 both=no
@@ -129,7 +129,20 @@ moving_four_bar() {
    echo END
 }
 
-# inline_slider PHI-CRANK X-ROD Y-ROD PHI-ROD X-PISTON: that of input/ on the x axis, at this estimate, without drive and instants
+# tangent OFFSET PHI ALPHA CARD...: a block in a slot of a crank, OFFSET beside its pivot, and on a guide at ALPHA through
+# (1, 0); the crank begins at PHI, 10 degrees a second, with these cards before END
+tangent() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
+   card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 "$1"; card POINT Q BLOCK
+   card POINT S SLIDER; card REVOLUTE O O1 PO; card REVOLUTE Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE "$3"
+   card DRIVE ANGLE CRANK '' "$2" 10.0
+   shift 3
+   printf '%s\n' "$@"
+   card END
+}
+
+# inline_slider PHI-CRANK X-ROD Y-ROD PHI-ROD X-PISTON: the crank-slider of input/ on the x axis, at this estimate, without
+# drive and instants
 inline_slider() {
    awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck | sed '/^POINT   G /s/ 0.5$/ 0.0/'
    card LINK CRANK '' '' 0.0 0.0 "$1"; card LINK ROD '' '' "$2" "$3" "$4"; card LINK PISTON '' '' "$5"

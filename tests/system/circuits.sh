@@ -186,21 +186,15 @@ equal 'several sets' '4 2' "$("$kinmat" "$w/deck" | awk '/ AFTER 1 TURN$/ { turn
 # Slides to infinity, where a guide comes to be parallel to another. On a crank at the angle p a block in a slot 0.3 beside the
 # origin, and on the line x = 1: y = (sin p + 0.3)/cos p. One circuit on either side of the poles at -90 and 90, each followed until
 # y is 100 lengths: 100 cos p -+ sin p = +-0.3.
-tangent() {
-   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
-   card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 "$1"; card POINT Q BLOCK
-   card POINT S SLIDER; card REVOLUTE O O1 PO; card REVOLUTE Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE 90.0
-   card DRIVE ANGLE CRANK '' "$2" 10.0; card AT '' '' '' 0.0; card CIRCUITS; card END
-}
 poles=$(awk 'function acos(x) { return atan2(sqrt(1 - x*x), x) }
    BEGIN { far = sqrt(10001); phi = atan2(1, 100); degree = atan2(1, 1)/45
       printf "%#.10g %#.10g %#.10g %#.10g", (phi - acos(-0.3/far))/degree, (acos(0.3/far) - phi)/degree,
          (phi + acos(-0.3/far))/degree - 360, -(acos(0.3/far) + phi)/degree }')
-tangent 0.3 0.0 > "$w/deck"
+tangent 0.3 0.0 90.0 "$(card AT '' '' '' 0.0)" CIRCUITS > "$w/deck"
 equal 'a slide to infinity' "1 1 $(echo $poles | cut -d' ' -f1,2) 2 2 $(echo $poles | cut -d' ' -f3,4)" "$(limits |
    awk '/ MIN / { printf "%s%s %s ", sep, $1, $2 } / MIN / { for (i = 3; $i != "MIN"; i++); printf "%s %s", $(i + 1), $(i + 4); sep = " " }')"
 # Where the first instant is beyond 100 lengths, its circuit is followed to twice as far.
-tangent 0.0 89.9 > "$w/deck"
+tangent 0.0 89.9 90.0 "$(card AT '' '' '' 0.0)" CIRCUITS > "$w/deck"
 far=$(awk 'BEGIN { d = atan2(1, 1)/45; t = sin(89.9*d)/cos(89.9*d); printf "%#.10g", atan2(2*t, 1)/d }')
 equal 'an assembly far away' "1 -$far $far" "$(limits | awk '$3 == 1 { n = $3; x = $(NF - 1) } n && / MAX / { print n, $4 == "MIN" ? $5 : "", $(NF - 1); exit }')"
 

@@ -407,29 +407,26 @@ told 'what follows the link that locks' 2 "2:$(past "($limit - 67.5)/0.1")
 
 # A block in a slot of the crank and on the guide x = 1: y = tan phi, and the slide in the slot is 1/cos phi. On the pole, at
 # 90 degrees, and beyond it the limit is the pole itself, from near and from far.
-# tangent UNIT ONE CARD...: in this unit of length, in which the guide is at ONE
-tangent() { head_of TANGENT "$1"; link CRANK; link BLOCK "$2"; link SLIDER "$2"; point O BASE; point G BASE "$2"; point O1 CRANK
-   point P CRANK; point Q BLOCK; point S SLIDER; joint O O1 PO; joint Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE 90.0
-   drive ANGLE CRANK '' 0.0 10.0; shift 2; printf '%s\n' "$@"; card END; }
 # at_pole K SIGN: the words at instant K
 at_pole() { echo "$1:$(past "$2*9" $3)
 $1: *** DRIVE ANGLE CRANK = $(found "$2*90") DEG, LINK SLIDER AT THE LIMIT"; }
-tangent M 1.0 "$(card TIME 12 '' '' 0.0 12.0)" > "$w/deck"
+tangent 0.0 0.0 90.0 "$(card TIME 12 '' '' 0.0 12.0)" > "$w/deck"
 told 'an instant on the pole of a slide' 2 "$(at_pole 9 1 5)"
 equal 'an instant on the pole of a slide: those before' '9 solved, 0 off' "$("$kinmat" --no-listing --csv - "$w/deck" | awk -F, '
    $5 == "SLIDER" && $7 != "" { n++; a = 10*$3*atan2(0, -1)/180; d = $7 - sin(a)/cos(a); off += d*d > 1e-24*(1 + $7*$7) }
    END { print n " solved, " off + 0 " off" }')"
-tangent MM 1000.0 "$(card TIME 3 '' '' 0.0 -9.0)" > "$w/deck"
+tangent 0.0 0.0 90.0 "$(card TIME 3 '' '' 0.0 -9.0)" | sed 's/^UNITS   M /UNITS   MM/' |
+   awk -v long=3 -f tests/system/other_units.awk > "$w/deck"
 builds=one told 'an instant on the pole of a slide, backwards, in millimetres' 2 "$(at_pole 3 -1)"
 for last in 9.0 9.1; do
-   tangent M 1.0 "$(card AT '' '' '' 0.0 8.0 8.9)" "$(card AT '' '' '' 8.99 8.999 $last)" > "$w/deck"
+   tangent 0.0 0.0 90.0 "$(card AT '' '' '' 0.0 8.0 8.9)" "$(card AT '' '' '' 8.99 8.999 $last)" > "$w/deck"
    builds=one told "from near the pole of a slide to T = $last" 2 "3: --- ?: DIGITS LOST TO ROUNDING
 4: --- ?: DIGITS LOST TO ROUNDING
 $(at_pole 5 1)"
 done
-tangent M 1.0 "$(card TIME 2 '' '' 0.0 9.0)" "$(card METHOD DENSE)" > "$w/deck"
+tangent 0.0 0.0 90.0 "$(card TIME 2 '' '' 0.0 9.0)" "$(card METHOD DENSE)" > "$w/deck"
 builds=one told 'METHOD DENSE: an instant on the pole of a slide' 2 "$(at_pole 2 1)"
-tangent M 1.0 "$(card TIME 9 '' '' 0.0 9.0)" "$(card RANGE)" "$(card EXTREMES PAIRS SLOT)" > "$w/deck"
+tangent 0.0 0.0 90.0 "$(card TIME 9 '' '' 0.0 9.0)" "$(card RANGE)" "$(card EXTREMES PAIRS SLOT)" > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out"
 equal 'the range up to the pole of a slide' "MIN $(found -90) SLIDER,MAX $(found 90) SLIDER," \
    "$(awk '/^   (MIN|MAX) .* AT THE LIMIT/ { printf "%s %s %s,", $1, $2, $5 }' "$w/out")"

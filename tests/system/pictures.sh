@@ -298,31 +298,32 @@ equal 'each curve has dashes of its own' "$(grep -c '<polyline class="curve"' "$
 equal 'dashes in turn' "$(dashes 0)" "$(dashes -9)"
 
 # The drawing for CAD: each vertex of a path is the number of the table, rounded to 12 digits; layers; closed or open.
-# vertices FILE LAYER: x and y of each
-vertices() { awk -v layer="$2" '
-   { sub(/\r$/, "") }
-   FNR % 2 == 1 { code = $1 + 0; next }
-   code == 0 { if (on) print x, y; on = 0; kind = $0 }
+# Awk: the code of each group is in `code`, what it holds in the next line.
+groups='{ sub(/\r$/, "") } FNR % 2 == 1 { code = $1 + 0; next }'
+# vertices FILE LAYER: x and y of each, rounded
+vertices() { awk -v layer="$2" "$groups"'
+   code == 0 { if (on) printf "%.11e %.11e\n", x, y; on = 0; kind = $0 }
    code == 8 && kind == "VERTEX" && $0 == layer { on = 1 }
    code == 10 { x = $0 } code == 20 { y = $0 }' "$1"; }
 # flags FILE LAYER: 1 for each closed line, 0 for each open one
-flags() { awk -v layer="$2" 'FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 } code == 8 { own = $0 }
+flags() { awk -v layer="$2" "$groups"' code == 0 { kind = $0 } code == 8 { own = $0 }
    code == 70 && kind == "POLYLINE" && own == layer { print }' "$1"; }
 # entities FILE: the numbers of entities by kind and layer
-entities() { awk 'FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 } code == 8 { print kind, $0 }' "$1" | sort | uniq -c | awk '{ print $2, $3, $1 }' | paste -s -d,; }
+entities() { awk "$groups"' code == 0 { kind = $0 } code == 8 { print kind, $0 }' "$1" | sort | uniq -c | awk '{ print $2, $3, $1 }' | paste -s -d,; }
+# of_table TABLE CLOSED: x and y of the points, which are those columns with x and y and without phi, one point after another
+of_table() { awk -F, -v closed="$2" '
+   NR == 1 { for (c = 1; c <= NF; c++) { name = $c; if (sub(/[.]x$/, "", name)) x[name] = c; name = $c; if (sub(/[.]phi$/, "", name)) angle[name] = 1 }
+      for (name in x) if (!(name in angle)) list[x[name]] = 1; columns = NF; next }
+   { for (c in list) { row[c, NR - 1] = sprintf("%.11e %.11e", $c, $(c + 1)) } ; rows = NR - 1 }
+   END { for (c = 1; c <= columns; c++) if (c in list) for (k = 1; k <= rows - closed; k++) print row[c, k] }' "$1"; }
 sed 's/^DRIVE.*/DRIVE   ANGLE   UPPER                           5.0/; s/^TIME .*/TIME    4                       0.0             4.0/' "$w/wishbone.deck" > "$w/two.deck"
 { sed -n '1,/^END/p' input/jansen.deck; cat "$w/two.deck"; } > "$w/cad.deck"
 "$kinmat" "$w/cad.deck" --no-listing --dxf "$w/cad.dxf" --table "$w/cad.csv"
 equal 'a drawing for CAD: status' 0 $?
 for set in 1 2; do
    layer=$([ $set = 1 ] || echo 2-)PATHS
-   # The columns of points, which are those with x and y and without phi.
-   awk -F, -v closed="$(flags "$w/cad.dxf" $layer | head -n 1)" '
-      NR == 1 { for (c = 1; c <= NF; c++) { name = $c; if (sub(/[.]x$/, "", name)) x[name] = c; name = $c; if (sub(/[.]phi$/, "", name)) angle[name] = 1 }
-         for (name in x) if (!(name in angle)) list[x[name]] = 1; columns = NF; next }
-      { for (c in list) { row[c, NR - 1] = sprintf("%.11e %.11e", $c, $(c + 1)) } ; rows = NR - 1 }
-      END { for (c = 1; c <= columns; c++) if (c in list) for (k = 1; k <= rows - closed; k++) print row[c, k] }' "$w/cad-$set.csv" > "$w/of.table"
-   vertices "$w/cad.dxf" $layer | awk '{ printf "%.11e %.11e\n", $1, $2 }' > "$w/of.dxf"
+   of_table "$w/cad-$set.csv" "$(flags "$w/cad.dxf" $layer | head -n 1)" > "$w/of.table"
+   vertices "$w/cad.dxf" $layer > "$w/of.dxf"
    equal "set $set: vertices as in the table" "$(wc -l < "$w/of.table") 0" "$(wc -l < "$w/of.dxf") $(cmp -s "$w/of.table" "$w/of.dxf"; echo $?)"
 done
 equal 'a motion that closes, and one that does not' '1 0' "$(flags "$w/cad.dxf" PATHS | sort -u) $(flags "$w/cad.dxf" 2-PATHS | sort -u)"
@@ -330,17 +331,15 @@ equal 'entities of the second set' 'CIRCLE 2-JOINTS 4,LINE 2-LINKS 6,POLYLINE 2-
    "$(entities "$w/cad.dxf" | tr , '\n' | grep ' 2-' | paste -s -d,)"
 # Of the joints in the order of the deck, the first ones of Jansen's leg: the fixed pivot and the pin of the crank, 15 long, at the
 # beginning, and the other fixed pivot, 38 beside the first and 7.8 below it.
-equal 'circles at the joints' '0 0,15 0,-38 -7.8' "$(awk '{ sub(/\r$/, "") } FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 }
+equal 'circles at the joints' '0 0,15 0,-38 -7.8' "$(awk "$groups"' code == 0 { kind = $0 }
    kind == "CIRCLE" && code == 10 { x = $0 + 0 } kind == "CIRCLE" && code == 20 { if (!((x, $0 + 0) in seen)) print x, $0 + 0; seen[x, $0 + 0] = 1 }' "$w/cad.dxf" |
    sed -n '1,2p;4p' | paste -s -d,)"
 # Instants of AT cards alone: no instant is a frame.
 sed 's/^TIME .*/AT                              3.0             0.0             1.0/' "$w/two.deck" > "$w/at.deck"
 "$kinmat" "$w/at.deck" --no-listing --dxf "$w/at.dxf" --table "$w/at.csv"
 equal 'a set of AT cards alone: status' 0 $?
-vertices "$w/at.dxf" PATHS | awk '{ printf "%.10e %.10e\n", $1, $2 }' > "$w/of.dxf"
-awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /[.]x$/) x[++n] = c; for (c = 1; c <= NF; c++) if ($c ~ /[.]phi$/) { name = $c; sub(/phi$/, "x", name); turns[name] = 1 }
-   for (k = 1; k <= n; k++) if (!($x[k] in turns)) point = x[k]; next } { printf "%.10e %.10e\n", $point, $(point + 1) }' "$w/at.csv" > "$w/of.table"
-equal 'a set of AT cards alone: vertices as in the table' "3 $(cat "$w/of.table")" "$(wc -l < "$w/of.dxf") $(cat "$w/of.dxf")"
+equal 'a set of AT cards alone: vertices as in the table' "3 $(of_table "$w/at.csv" 0)" \
+   "$(vertices "$w/at.dxf" PATHS | wc -l) $(vertices "$w/at.dxf" PATHS)"
 equal 'it begins and ends' 'SECTION ENTITIES ENDSEC EOF' "$(awk 'NR == 2 || NR == 4' "$w/cad.dxf" | paste -s -d ' ') $(tail -n 4 "$w/cad.dxf" | awk 'NR % 2 == 0' | paste -s -d ' ')"
 if python3 -c 'import ezdxf' 2> /dev/null; then
    equal 'ezdxf reads it' '2' "$(python3 -c 'import ezdxf, sys; print(len({e.dxf.layer for e in ezdxf.readfile(sys.argv[1]).modelspace() if e.dxftype() == "POLYLINE"}))' "$w/cad.dxf" 2>&1)"

@@ -92,10 +92,8 @@ equal 'a landing gear, in Polish' '   PUNKTY ZMIANY NA DRODZE 1' "$("$kinmat" "$
 # A slide goes to infinity where a slot is parallel to a guide at the angle ALPHA: from ALPHA - 180 to ALPHA exactly, whether an
 # instant of the way along the drive, every 5 degrees, is there, just before or just behind; a run that lands there has its limit.
 for alpha in 90 90.00001 89.99999 90.001 89.999 90.1 87.3; do
-   { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
-     card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 0.3; card POINT Q BLOCK
-     card POINT S SLIDER; card REVOLUTE O O1 PO; card REVOLUTE Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE $alpha.0
-     card DRIVE ANGLE CRANK '' 0.0 10.0; card TIME 12 '' '' 0.0 12.0; card RANGE; card END; } | sed 's/\([.][0-9]*\)[.]0/\1/' > "$w/deck"
+   case $alpha in *.*) guide=$alpha ;; *) guide=$alpha.0 ;; esac
+   tangent 0.3 0.0 $guide "$(card TIME 12 '' '' 0.0 12.0)" RANGE > "$w/deck"
    range "a slide to infinity, $alpha" " ANGLE CRANK
    MIN  $(limit "$(awk "BEGIN { printf \"%.12f\", $alpha - 180 }")") DEG   LINK SLIDER AT THE LIMIT
    MAX  $(limit $alpha) DEG   LINK SLIDER AT THE LIMIT"

@@ -3,13 +3,11 @@
 # finite, or what cannot be told. By every method, whatever the unit of length; and of independent mechanisms each.
 . tests/counting.sh
 
-# link, point, joint, slide: cards of one mechanism, whose names end in
-# $mark and whose lengths are in units of 10**$unit m
-long() { if [ "${1:-0.0}" = 0.0 ]; then echo 0.0; else echo "${1}E$unit"; fi; }
-link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }
-point() { card POINT "$1$mark" "$2" '' "$(long "$3")" "$(long "$4")"; }
+# link, point, joint, slide: cards of one mechanism, whose names end in $mark
+link() { card LINK "$1$mark" '' '' "$2" "$3" "$4"; }
+point() { card POINT "$1$mark" "$2" '' "${3:-0.0}" "${4:-0.0}"; }
 joint() { card REVOLUTE "$1$mark" "$2$mark" "$3$mark"; }
-slide() { card DRIVE X "$1$mark" '' "$(long "$2")" "$(long "$3")"; }
+slide() { card DRIVE X "$1$mark" '' "$2" "$3"; }
 angle() { card DRIVE ANGLE "$1$mark" '' "$2" "$3" "$4"; }
 
 # four_bar CRANK COUPLER ROCKER BASE PHI-CRANK PHI-COUPLER PHI-ROCKER, in degrees
@@ -45,14 +43,14 @@ rocker_turns() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; 
 rocker_turns_later() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 100.0; angle RO 100.0 -20.0 20.0; }
 parallelogram_turns() { four_bar 2.0 4.0 2.0 4.0 60.0 0.0 60.0; angle CR 60.0 -120.0 120.0; }
 rocker_turns_out() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 0.0 -20.0; }
-far_end_turns() { slider 0.0 0.0 4.0; card DRIVE X "B$mark" '' "$(long 4.0)" 0.0 "$(long -0.5)"; }
+far_end_turns() { slider 0.0 0.0 4.0; card DRIVE X "B$mark" '' 4.0 0.0 -0.5; }
 # The angle that a parallelogram keeps, driven at a speed, and at rest.
 idle() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 30.0; }
 idle_at_rest() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 0.0; }
 
-# deck METHOD UNIT LANGUAGE NAME...: one set with these mechanisms, their lengths in units of 10**UNIT m
+# deck METHOD LANGUAGE NAME...: one set with these mechanisms
 deck() {
-   method=$1; unit=$2; language=$3; shift 3
+   method=$1; language=$2; shift 2
    card TITLE SINGULAR; card UNITS M DEG S; card LANG "$language"; card GROUND BASE '' '' 0.0 0.0 0.0
    mark=
    for name; do mark=$mark+; "$name"; done
@@ -78,9 +76,11 @@ unclear=': NO UNIQUE VELOCITIES'
 # sentences K WORDS NAME...: by these METHODS, in m, mm and km, a set each of one run
 sentences() {
    k=$1; words=$2; shift 2
-   deck NEWTON +00 EN "$@" > "$w/one.deck"
+   deck NEWTON EN "$@" > "$w/one.deck"
    for method in $METHODS; do
-      for unit in +00 -03 +03; do sed "s/E+00/E$unit/g; s/^\(METHOD  \).*/\1$method/" "$w/one.deck"; done
+      for power in 0 -3 3; do
+         sed "s/^\(METHOD  \).*/\1$method/" "$w/one.deck" | awk -v long=$power -f tests/system/other_units.awk
+      done
    done > "$w/deck"
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
    equal "$*: standard error" '' "$(cat "$w/err")"
@@ -115,7 +115,7 @@ sentences 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
 CHANGE POINT, LINKS CO+++, RO+++ COLLINEAR$change
 DEAD POINT, LINKS CR++++, RD++++ COLLINEAR$dead" rocker_turns_out parallelogram parallelogram far_end
-deck NEWTON +00 PL rocker_turns_out parallelogram far_end > "$w/deck"
+deck NEWTON PL rocker_turns_out parallelogram far_end > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
 equal 'in Polish' 'JAKOBIAN OSOBLIWY, OGNIWA CR+, CO+ WSPOLLINIOWE: BRAK JEDNOZNACZNYCH PREDKOSCI
 PUNKT ZMIANY, OGNIWA CO++, RO++ WSPOLLINIOWE: PREDKOSCI NIEJEDNOZNACZNE
@@ -132,7 +132,7 @@ parallelogram_begun() { four_bar 2.0 4.0 2.0 4.0 10.0 0.0 10.0; angle CR 10.0 10
 rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
 # angles K WORDS NAME: the angles of its three links at instant K, in degrees
 angles() {
-   deck NEWTON +00 EN "$3" > "$w/deck"
+   deck NEWTON EN "$3" > "$w/deck"
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
    equal "$3: angles" "$2" \
       "$(awk -v k="$1" '/^ INSTANT/ { at = $2 } /^ CONTINUATION/ { exit } at "" == k && NF == 10 && $4 ~ /[0-9]/ { printf "%s ", $4 }' "$w/out")"
@@ -147,7 +147,7 @@ angles 0 '36.869898 36.869898 36450.00000 ' rocker_after_turns
 # driven K WORDS NAME LINK
 driven() {
    for method in NEWTON DENSE; do
-      deck "$method" +00 EN "$3" > "$w/deck"
+      deck "$method" EN "$3" > "$w/deck"
       equal "$3, METHOD $method: rate and acceleration of $4" "$2" "$("$kinmat" "$w/deck" 2> "$w/err" |
          awk -v k="$1" -v link="$4+" '/^ INSTANT/ { at = $2 } at "" == k && $1 == link { printf "%.9g %.9g", $7, $10; exit }')"
    done
