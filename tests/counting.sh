@@ -1,6 +1,6 @@
 # To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
-# a point, whatever the user's language. `kinmat` and `debug` are the command in both builds; `w` is an empty directory for
-# the files of the test. All are paths from the root, for scripts that go elsewhere.
+# a point, whatever the user's language. `kinmat` and `debug` are the command in both builds; `w` is an empty
+# directory for the files of the test. All are paths from the root, for scripts that go elsewhere.
 BUILD=${BUILD:-build}
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
 kinmat=$BUILD/kinmat debug=$BUILD/debug/kinmat
@@ -28,11 +28,12 @@ conclude() {
    [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }
 
-# by_libraries NAME DECK LISTING: the deck has this listing with the reference LAPACK and with OpenBLAS, if both are installed
+# by_libraries NAME DECK LISTING: by the reference LAPACK and by OpenBLAS, if both are installed, it has this listing
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 both=no
-[ -e "${lapack%%:*}/liblapack.so.3" ] && [ -e "${lapack##*:}/libblas.so.3" ] && [ -e $openblas/libopenblas.so.0 ] && both=yes
+[ -e "${lapack%%:*}/liblapack.so.3" ] && [ -e "${lapack##*:}/libblas.so.3" ] && [ -e $openblas/libopenblas.so.0 ] &&
+   both=yes
 by_libraries() {
    [ $both = yes ] || return 0
    for library in $lapack $openblas; do
@@ -129,8 +130,8 @@ moving_four_bar() {
    echo END
 }
 
-# tangent OFFSET PHI ALPHA CARD...: a block in a slot of a crank, OFFSET beside its pivot, and on a guide at ALPHA through
-# (1, 0); the crank begins at PHI, 10 degrees a second, with these cards before END
+# tangent OFFSET PHI ALPHA CARD...: a block in a slot of a crank, OFFSET beside its pivot, and on a guide at ALPHA
+# through (1, 0); the crank begins at PHI, 10 degrees a second, with these cards before END
 tangent() {
    card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
    card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 "$1"; card POINT Q BLOCK
@@ -141,10 +142,11 @@ tangent() {
    card END
 }
 
-# inline_slider PHI-CRANK X-ROD Y-ROD PHI-ROD X-PISTON: the crank-slider of input/ on the x axis, at this estimate, without
-# drive and instants
+# inline_slider PHI-CRANK X-ROD Y-ROD PHI-ROD X-PISTON: the crank-slider of input/ on the x axis, at this estimate,
+# without drive and instants
 inline_slider() {
-   awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck | sed '/^POINT   G /s/ 0.5$/ 0.0/'
+   awk '/^END/ { exit } /^(UNITS|GROUND|POINT|REVOLUTE|PRISM)/' input/crank_slider.deck |
+      sed '/^POINT   G /s/ 0.5$/ 0.0/'
    card LINK CRANK '' '' 0.0 0.0 "$1"; card LINK ROD '' '' "$2" "$3" "$4"; card LINK PISTON '' '' "$5"
 }
 

@@ -132,10 +132,12 @@ END
 # --- what does not hold fails, with file, line, expected and found, and ends its test ------------------------------
 bad=$work/bad/test_bad.pf
 # report NAME LINE TEXT: what the stand-in prints of a test whose assertion in this line fails
-report() { printf 'Failure in: test_bad_suite.%s\n  Location: [test_bad.pf:%d]\n%s\n\n' "$1" "$2" "$3" >> "$work/bad.expected"; }
+report() {
+   printf 'Failure in: test_bad_suite.%s\n  Location: [test_bad.pf:%d]\n%s\n\n' "$1" "$2" "$3" >> "$work/bad.expected"
+}
 # fails NAME ASSERTION TEXT: a test that this assertion ends
 fails() {
-   printf '   @test\n   subroutine %s()\n      %s\n      count = count + 1\n   end subroutine %s\n\n' "$1" "$2" "$1" >> "$bad"
+   printf '   @test\n   subroutine %s()\n      %s\n      count = count + 1\n   end subroutine\n\n' "$1" "$2" >> "$bad"
    report "$1" $(($(wc -l < "$bad") - 3)) "$3"
 }
 cat > "$bad" <<'END'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The cards POLE and CURVE: tables against closed forms in real128, by both methods; the theorems of Kennedy and of Euler and
-# Savary, which know no velocities; the CSV. Other units are in units.sh, what is refused in tests/unit/deck.
+# The cards POLE and CURVE: tables against closed forms in real128, by both methods; the theorems of Kennedy and of
+# Euler and Savary, which know no velocities; the CSV. Other units: units.sh; errors: tests/unit/deck.
 . tests/counting.sh
 
 # cards DECK: poles of links that are joined and of some that are not, paths in the plane and in links that move

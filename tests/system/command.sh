@@ -7,12 +7,15 @@
 one_set() {
    rate=$1
    shift
-   still_four_bar "$@" | sed -e 's/DEG/RAD/' -e "s/^\(DRIVE .*\) 30.0/\1 $rate/" -e "s/^AT .*/$(card TIME 2 '' '' 0.0 2.0)/"
+   still_four_bar "$@" |
+      sed -e 's/DEG/RAD/' -e "s/^\(DRIVE .*\) 30.0/\1 $rate/" -e "s/^AT .*/$(card TIME 2 '' '' 0.0 2.0)/"
 }
 
 # Two sets of computations of a crank-rocker.
-{ card TITLE 'TEST '; moving_four_bar '' '' '' '' "$(card TIME 8 '' '' 0.0 4.0)" "$(card PRINT ALL)"
-  card TITLE 'TEST AT'; moving_four_bar '' '' '' '' "$(card AT '' '' '' 2.5 0.5 1.5)" "$(card PRINT ALL)"; } > "$w/m.deck"
+{
+   card TITLE 'TEST '; moving_four_bar '' '' '' '' "$(card TIME 8 '' '' 0.0 4.0)" "$(card PRINT ALL)"
+   card TITLE 'TEST AT'; moving_four_bar '' '' '' '' "$(card AT '' '' '' 2.5 0.5 1.5)" "$(card PRINT ALL)"
+} > "$w/m.deck"
 
 # Where the deck comes from, where the listing goes.
 "$kinmat" "$w/m.deck" > "$w/m.lst" 2> "$w/err"
@@ -315,9 +318,10 @@ equal 'deck with an error: the output file is left alone' kept "$(cat "$w/kept")
 
 # Files that cannot be written. Never a run-time error of the language.
 for option in -o --csv --log --svg; do
-   rejected "$option cannot be opened" 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
-      "$w/m.deck" $option /nonexistent/x
-   rejected "$option is a directory" 3 " *** FILE $w CANNOT BE OPENED FOR WRITING (IS A DIRECTORY)" "$w/m.deck" $option "$w"
+   for case in '/nonexistent/x:NO SUCH FILE OR DIRECTORY' "$w:IS A DIRECTORY"; do
+      rejected "$option $case" 3 " *** FILE ${case%%:*} CANNOT BE OPENED FOR WRITING (${case#*:})" \
+         "$w/m.deck" $option "${case%%:*}"
+   done
 done
 full() { equal "$1, disk full: status" 3 "$2"
    equal "$1, disk full: sentence" ' *** WRITING STANDARD OUTPUT FAILED (NO SPACE LEFT ON DEVICE)' "$(cat "$w/err")"; }

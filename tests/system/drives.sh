@@ -3,7 +3,7 @@
 # as many. A law that goes out and comes back within a step must be followed out and back.
 . tests/counting.sh
 
-# four_bar FOUR-BAR...: as still_four_bar, in radians, without its drive and its instant; one that rocks, and one that turns
+# four_bar FOUR-BAR...: as still_four_bar, in radians, without drive and instant; one that rocks, one that turns
 four_bar() { still_four_bar "$@" | sed -e 's/DEG/RAD/' -e '/^\(DRIVE\|AT\|END\)/d'; }
 rocking='2.0 1.5 1.5 4.0 CRANK 0.7 -0.1 2.28 0.7'
 turning='1.0 3.5 3.0 4.0 CRANK 0.5 0.78 1.78 0.5'
@@ -128,7 +128,8 @@ equal 'beyond a limit and back between two instants' \
 new_line='
 '
 for steps in 4 7 18 45; do
-   { inline_slider 52.0 0.61 0.79 -15.0 3.5; card DRIVE X B '' 3.505615234375 0.02197265625 -0.00048828125; card PRINT LINKS CRANK
+   { inline_slider 52.0 0.61 0.79 -15.0 3.5; card DRIVE X B '' 3.505615234375 0.02197265625 -0.00048828125
+     card PRINT LINKS CRANK
      time_card $steps 0.0 90.0; } > "$w/deck"
    "$kinmat" "$w/deck" --csv "$w/csv" > "$w/lst" 2> "$w/err"
    # An instant on it stands there, and the next one tells the way on.

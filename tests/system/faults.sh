@@ -70,7 +70,7 @@ past() { echo " *** NO POSITION: BEYOND THE LIMIT OF MOTION AT T = $(found "$1" 
 
 # singular LINKS: the sentence of a singular position of these
 singular() { echo " *** JACOBIAN SINGULAR, $*: NO UNIQUE VELOCITIES"; }
-# idle LINKS [IDLE]: the words at two instants of a singular position of these links, if the drives do not determine IDLE
+# idle LINKS [IDLE]: the words at two instants of a singular position of LINKS, of which the drives leave IDLE free
 idle() {
    singular LINKS "$1" | sed 's/^/0:/'
    echo "0: *** LINKS ${2:-$1} NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM"
@@ -317,14 +317,15 @@ guides 0.252 0.0 > "$w/deck"
 told 'two guides, one too far off' 2 "$(gaps 0 "$open$give" 'PAIR GUIDE-2' "$(small 0.001) M" "$(small 0.001) M")
 $largest 5.E-04"
 guides 0.25 0.001 > "$w/deck"
-told 'two guides that are not parallel' 2 "$(gaps 0 "$open$give" 'PAIR GUIDE-2' "$(small 0.001) DEG" "$(small 0.001) DEG")
+told 'two guides not parallel' 2 "$(gaps 0 "$open$give" 'PAIR GUIDE-2' "$(small 0.001) DEG" "$(small 0.001) DEG")
 $largest 2.E-05"
 # With u the direction of the cranks, the left null vector of the loops through B and C is (a u, u), 4 a u_y = u_x - 2 u_y: of
 # an excess e the pair C keeps e/(1 + a**2).
 gap() { small "$1/(1 + ((cos($2*pi/180) - 2*sin($2*pi/180))/(4*sin($2*pi/180)))^2)"; }
 for excess in 1e-3 1e-6 1e-9; do
    { head_of 'THIRD CRANK'; three_cranks $excess 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 2 2.0; } > "$w/deck"
-   told "a third crank too long by $excess" 2 "$(gaps 0 "$open$give" 'PAIR PAIR-C' "$(gap $excess 30) M" "$(gap $excess 60) M" "$(gap $excess 90) M")
+   told "a third crank too long by $excess" 2 \
+      "$(gaps 0 "$open$give" 'PAIR PAIR-C' "$(gap $excess 30) M" "$(gap $excess 60) M" "$(gap $excess 90) M")
 $largest $(awk "BEGIN { printf \"%.0E\", $(gap $excess 30)/4 }" | sed 's/E/.E/')"
 done
 { head_of 'THIRD CRANK'; three_cranks 4e-12 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 2 2.0; } > "$w/deck"
@@ -339,7 +340,9 @@ told 'in Polish: too long' 2 "0: *** ROWNANIA NADLICZBOWE SA SPRZECZNE: DLA LICZ
 
 # Lock-up: the limit by the cosine law, by crank and rod in line, by the rod across the guide.
 limit="acos((9.0 + 16.0 - 16.0)/24.0)*180/pi"
-locking() { head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; "$@"; card END; }
+locking() {
+   head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; "$@"; card END
+}
 over=$(past "$limit/20")
 ends="DRIVE ANGLE CRANK = $(found "$limit") DEG, LINKS COUPL, ROCK AT THE LIMIT, COLLINEAR"
 for method in NEWTON DENSE; do
@@ -450,8 +453,12 @@ told 'a law before its pole' 0 ''
 # Change points: a BRANCH card asks for the other branch. Crank 2 at 20 deg and 10 deg a second on a base of 4.
 crossing() { head_of CROSSING; four_bar '' 0.0 2.0 4.0 2.0 4.0 20.0 0.0 20.0; drive ANGLE CRANK '' 20.0 10.0; "$@"; until_time 4 20.0; }
 at16='CHANGE POINT AT T = 16.00000 S, LINKS COUPL, ROCK'
-# last_angle LINK: at the last instant. Crossed, the corners A and B of the rocker change with A0 and B0: tan(r/2) = -tan(p/2)*(4 + 2)/(4 - 2)
-last_angle() { "$kinmat" "$w/deck" --csv "$w/csv" > "$w/out"; awk -F, -v link="$1" '$5 == link { p = $8 } END { printf "%.9f", p }' "$w/csv"; }
+# last_angle LINK: at the last instant. Crossed, the corners A and B of the rocker change with A0 and B0: tan(r/2) =
+# -tan(p/2)*(4 + 2)/(4 - 2)
+last_angle() {
+   "$kinmat" "$w/deck" --csv "$w/csv" > "$w/out"
+   awk -F, -v link="$1" '$5 == link { p = $8 } END { printf "%.9f", p }' "$w/csv"
+}
 crossed=$(awk 'BEGIN { pi = atan2(0, -1); p = 220*pi/180; a = atan2(6*sin(p/2), -2*cos(p/2))*360/pi; printf "%.9f", a }')
 crossing true > "$w/deck"
 told 'a change point without a card' 0 "4: --- $at16: PASSED ON THE SMOOTH BRANCH"
@@ -585,8 +592,8 @@ equal 'angles of zero: two are as near' 1 "$(said "$w/out" | grep -c 'ANOTHER AS
 equal 'a small dyad: the error told' yes "$(awk -F, '$2 == 0 { d = $8 + 17.4949427633873034; if (d < 0) d = -d
    print (d <= 3*$18 && $18 < 1e-9 ? "yes" : $8 " " $18) }' "$w/csv")"
 
-# All methods say the same of the mechanism, whatever the way of their iterations; and of themselves, if they find nothing.
-# 1 + 1 + 1 < 4: the loop of the short four-bar closes but for 1.
+# All methods say the same of the mechanism, whatever the way of their iterations; and of themselves, if they find
+# nothing. 1 + 1 + 1 < 4: the loop of the short four-bar closes but for 1.
 for method in NEWTON DENSE MATRIX; do
    by=$(card METHOD "$method")
    { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; echo "$by"; until_time 2 3.0; } > "$w/deck"
@@ -598,7 +605,8 @@ for method in NEWTON DENSE MATRIX; do
    { head_of SHORT; four_bar '' 0.0 1.0 1.0 1.0 4.0 0.0 50.0 110.0; drive ANGLE CRANK '' 0.0 0.0; echo "$by"
       until_time 1 1.0; } > "$w/deck"
    told "METHOD $method: bars that are too short" 2 "$(gaps 0 "$none" 'PAIR PB' "$(small 1) M" "$(small 1) M")"
-   { head_of NAPED; card LANG PL; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; echo "$by"; until_time 1 3.0; } > "$w/deck"
+   { head_of NAPED; card LANG PL; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; echo "$by"
+      until_time 1 3.0; } > "$w/deck"
    told "METHOD $method, in Polish: a limit" 2 "1: *** BRAK POLOZENIA: POZA KRESEM RUCHU W CHWILI T = 2.500000 S
 1: *** NAPED X B = $(found 4) M, OGNIWA CRANK, ROD NA KRESIE RUCHU, WSPOLLINIOWE"
    [ $method = NEWTON ] && continue
@@ -861,7 +869,8 @@ sed -e 's/^TIME .*/TIME    1                       0.0             3.33333333E-0
 equal 'many intervals: lines over 120 columns' 0 "$(awk 'length > 120' "$w/out" | wc -l | tr -d ' ')"
 equal 'many intervals: the others are counted' 1 "$(grep -c 'EXTREMES MAY BE MISSED WITHIN T = .* S AND [0-9]* MORE$' "$w/out")"
 
-# drives NAME REMARKS CARD...: what is remarked of drives that rest or turn fast: a crank-slider with these DRIVE cards and TIME
+# drives NAME REMARKS CARD...: what is remarked of drives that rest or turn fast: a crank-slider with these DRIVE
+# cards and TIME
 drives() {
    name=$1; remarks=$2; shift 2
    { head_of REMARKED; slider 1.0 3.0 60.0 0.0; printf '%s\n' "$@"; card END; } > "$w/deck"

@@ -17,15 +17,19 @@ mechanism() {
 # marked NAME MARK POWER: the cards of a mechanism, its lengths times 10**POWER, its names with MARK behind them
 marked() {
    mechanism "$1" | awk -v long="$3" -f tests/system/other_units.awk | awk -v mark="$2" '
-      function name(column,   text) { text = substr($0, column, 8); sub(/ +$/, "", text); return sprintf("%-8s", text (text == "" ? "" : mark)) }
+      function name(column,   text) {
+         text = substr($0, column, 8)
+         sub(/ +$/, "", text)
+         return sprintf("%-8s", text (text == "" ? "" : mark))
+      }
       /^END/ { exit }
       /^(GROUND|LINK|POINT|REVOLUTE|PRISM)/ { print substr($0, 1, 8) name(9) name(17) name(25) substr($0, 33) }
       /^DRIVE/ { print substr($0, 1, 16) name(17) name(25) substr($0, 33) }
       /^BRANCH/ { print substr($0, 1, 8) name(9) substr($0, 17) }
       /^(ADD|[*])/'
 }
-# deck: the mechanisms on standard input, one a line: NAME MARK POWER; units and times are those of the last, in nine steps, which
-# end on the change point of parallelogram_at
+# deck: the mechanisms on standard input, one a line: NAME MARK POWER; units and times are those of the last, in nine
+# steps, which end on the change point of parallelogram_at
 deck() {
    card METHOD "${method:-NEWTON}"
    while read -r name mark power; do
@@ -86,7 +90,8 @@ equal 'a contradiction in a small mechanism: the other' '10 ' \
 on_a_large_link() {
    card UNITS M DEG S
    marked four_bar + +03
-   marked "$1" = -03 | sed -e '/^GROUND/d' -e 's/BASE=   /COUPLER+/' -e 's/^DRIVE.*/DRIVE   RELANGLECOUPLER+CRANK-1=30.0            60.0/'
+   marked "$1" = -03 | sed -e '/^GROUND/d' -e 's/BASE=   /COUPLER+/' \
+      -e "s/^DRIVE.*/$(card DRIVE RELANGLE COUPLER+ CRANK-1= 30.0 60.0)/"
    card TIME 2 '' '' 0.0 1.0
    card PRINT ALL
    card END

@@ -18,7 +18,7 @@ book() {
    card LENGTH A0 A '' "${1-30.0}"; echo "$5"; card LENGTH A B '' "${2-70.0}"; echo "$6"; card LENGTH B0 B '' "${3-65.0}"; echo "$7"
    card DRIVE ANGLE CRANK '' 30.0 60.0
 }
-# made NAME: $w/NAME.deck of the cards on standard input; run NAME [STATUS]: its listing, CSV and messages, and how it ends
+# made NAME: $w/NAME.deck of the cards on standard input; run NAME [STATUS]: its outputs, and how it ends
 made() { { card UNITS MM DEG S; cat; card END; } > "$w/$1.deck"; }
 run() { "$kinmat" "$w/$1.deck" -o "$w/$1.lst" --csv "$w/$1.csv" 2> "$w/$1.err"; equal "$1: status" "${2:-0}" $?; }
 hours=$(card TIME 6 '' '' 0.0 6.0)

@@ -12,16 +12,18 @@ by() {
    grep ',LINK,' "$w/$1.all" > "$w/$1.csv"
 }
 
-# against METHOD: rows of METHOD that differ from NEWTON's by more than 1E-6 of the largest of the set, and are not marked; rows
-# that it has, and that NEWTON has; instants of which it has all three links
+# against METHOD: rows of METHOD that differ from NEWTON's by more than 1E-6 of the largest of the set, and are not
+# marked; rows that it has, and that NEWTON has; instants of which it has all three links
 against() {
    awk -F, '
       function far(a, b, unit) { return a - b > 1e-6*unit || b - a > 1e-6*unit }
       { row = $1 " " $2 " " $5 }
-      NR == FNR { for (i = 6; i <= 8; i++) { at[row, i] = $i; v = $i < 0 ? -$i : $i + 0; if (i < 8 && v > size[$1]) size[$1] = v }
+      NR == FNR { for (i = 6; i <= 8; i++) at[row, i] = $i
+         for (i = 6; i < 8; i++) { v = $i < 0 ? -$i : $i + 0; if (v > size[$1]) size[$1] = v }
          if ($15 == "") newton++; else lost[row]; next }
       $15 == "" { has++; if (++links[$1, $2] == 3) instants++
-         if (!((row, 6) in at) || row in lost || far(at[row, 6], $6, size[$1]) || far(at[row, 7], $7, size[$1]) || far(at[row, 8], $8, 1)) wrong++ }
+         if (!((row, 6) in at) || row in lost || far(at[row, 6], $6, size[$1]) || far(at[row, 7], $7, size[$1]) ||
+            far(at[row, 8], $8, 1)) wrong++ }
       END { print wrong + 0, has + 0, newton + 0, instants + 0 }' "$w/NEWTON.csv" "$w/$1.csv"
 }
 

@@ -310,7 +310,7 @@ flags() { awk -v layer="$2" "$groups"' code == 0 { kind = $0 } code == 8 { own =
    code == 70 && kind == "POLYLINE" && own == layer { print }' "$1"; }
 # entities FILE: the numbers of entities by kind and layer
 entities() { awk "$groups"' code == 0 { kind = $0 } code == 8 { print kind, $0 }' "$1" | sort | uniq -c | awk '{ print $2, $3, $1 }' | paste -s -d,; }
-# of_table TABLE CLOSED: x and y of the points, which are those columns with x and y and without phi, one point after another
+# of_table TABLE CLOSED: x and y of its points, one after another: the columns that have x and y and no phi
 of_table() { awk -F, -v closed="$2" '
    NR == 1 { for (c = 1; c <= NF; c++) { name = $c; if (sub(/[.]x$/, "", name)) x[name] = c; name = $c; if (sub(/[.]phi$/, "", name)) angle[name] = 1 }
       for (name in x) if (!(name in angle)) list[x[name]] = 1; columns = NF; next }

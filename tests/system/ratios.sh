@@ -110,8 +110,8 @@ lines() { awk '/^ RESULTS/ { on = 1 } /^ (EXTREMES|CONTINUATION)/ { on = 0 } on 
 # ratio_of NAME FILE: the values and derivatives of a ratio in a CSV
 ratio_of() { awk -F, -v name="$1" '$4 == "RATIO" && $5 == name { print $6, $9 }' "$2"; }
 
-# The boom of input/, whose columns closed forms print in expected/. The laws do not matter: at rest the ratios are the same
-# numbers, and by other methods.
+# The boom of input/, whose columns closed forms print in expected/. The laws do not matter: at rest the ratios are
+# the same numbers, and by other methods.
 ratio='AXLE BY SLIDE RAM'
 sed "s/^END/$(card PRINT RATIOS AXLE)\n&/" input/boom.deck > "$w/boom.deck"
 "$kinmat" "$w/boom.deck" -o "$w/boom.lst" --csv "$w/boom.csv" --table "$w/boom.table"
@@ -126,7 +126,8 @@ done
 
 # The table of COLUMN has the digits of PRINT, and --table the same columns; EXTREMES of a ratio are those of its values here,
 # which fall or rise all the way.
-equal 'boom: columns and rows' "$(awk '/^ AXLE BY/ { print $5, $6 }' "$w/boom.lst")" "$(lines "$w/boom.lst" | awk '{ print $5, $6 }')"
+equal 'boom: columns and rows' "$(awk '/^ AXLE BY/ { print $5, $6 }' "$w/boom.lst")" \
+   "$(lines "$w/boom.lst" | awk '{ print $5, $6 }')"
 equal 'boom: --table' 't,SLIDE.RAM,AXLE.theta,HEIGHT.s,AXLE.by.SLIDE.RAM,AXLE.by.SLIDE.RAM.d,HEIGHT.by.SLIDE.RAM' \
    "$(head -n 1 "$w/boom.table")"
 equal 'boom: --table and CSV' "$(ratio_of "$ratio" "$w/boom.csv")" "$(awk -F, 'NR > 1 { print $5, $6 }' "$w/boom.table")"
@@ -168,7 +169,8 @@ equal 'flags with PRINT' ' --- *: INSTANT FLAGGED, SEE ABOVE' "$(grep -e '^ --- 
 # Without numbers on its LINK card x and y of a link are no question of EXTREMES LINKS; a card with its name or a COLUMN card
 # asks for them. asked CARD...: the heads of the extremes of links
 asked() {
-   { sed '/^COLUMN/d; $d; s/^TIME.*/TIME    6                       0.0             3.0/' "$w/limit.deck"; printf '%s\n' "$@"; echo END; } > "$w/axes.deck"
+   { sed "/^COLUMN/d; \$d; s/^TIME.*/$(card TIME 6 '' '' 0.0 3.0)/" "$w/limit.deck"; printf '%s\n' "$@"
+     echo END; } > "$w/axes.deck"
    "$kinmat" "$w/axes.deck" > "$w/axes.lst"
    awk '/^ EXTREMES   T/ { on = 1 } on && /^ LINK/ { $1 = $1; print; exit }' "$w/axes.lst"
 }
@@ -176,8 +178,9 @@ all='LINK X Y PHI VX VY VPHI AX AY APHI'
 equal 'axes that nobody placed' 'LINK PHI VPHI APHI' "$(asked "$(card EXTREMES LINKS)")"
 equal 'a column asks for x' "$all" "$(asked "$(card EXTREMES LINKS)" "$(card COLUMN LINKS ROCKER X)")"
 equal 'a name asks for x' "$all" "$(asked "$(card EXTREMES LINKS)" "$(card EXTREMES LINKS ROCKER)")"
-equal 'EXTREMES ALL with COLUMN: only those' '1 2' "$(asked "$(card EXTREMES ALL)" "$(card COLUMN LINKS ROCKER VPHI)" > "$w/heads"
-   awk '/^ EXTREMES   T/ { on = 1 } on && /^ (LINK|PAIR|POINT)/ { kinds++ } on && /^  M(IN|AX)/ { n += NF } END { print kinds, n/2 }' "$w/axes.lst")"
+asked "$(card EXTREMES ALL)" "$(card COLUMN LINKS ROCKER VPHI)" > "$w/heads"
+equal 'EXTREMES ALL with COLUMN: only those' '1 2' "$(awk '/^ EXTREMES   T/ { on = 1 }
+   on && /^ (LINK|PAIR|POINT)/ { kinds++ } on && /^  M(IN|AX)/ { n += NF } END { print kinds, n/2 }' "$w/axes.lst")"
 
 # More columns than a line has room for.
 { sed '/^COLUMN/d; $d' "$w/limit.deck"; for quantity in X Y VX VY AX AY; do card COLUMN POINTS A $quantity; card COLUMN POINTS B $quantity; done

@@ -57,7 +57,8 @@ at() { echo "/^ INSTANT $1 / { on = 1 } on && !n && $2 { $3; n = 1 } 1"; }
 fault 'a last digit' yoke \
    "$(at 7 '/[.][0-9]+[1-8]$/' 'd = substr($0, length($0)) + 1; sub(/.$/, d)')" '-*[0-9.]* IS NOT '
 fault 'a first digit' jansen \
-   "$(at 5 'match($0, / [1-8][.][0-9]/)' '$0 = substr($0, 1, RSTART) substr($0, RSTART + 1, 1) + 1 substr($0, RSTART + 2)')" '[2-9].[0-9]* IS NOT '
+   "$(at 5 'match($0, / [1-8][.][0-9]/)' '$0 = substr($0, 1, RSTART) substr($0, RSTART + 1, 1) + 1 substr($0, RSTART + 2)')" \
+   '[2-9].[0-9]* IS NOT '
 fault 'a sign' four_bar "$(at 3 '/ -[0-9]/' 'sub(/ -/, "  ")')" '[0-9.]* IS NOT -'
 fault 'a digit of a time' four_bar "$(first '/^ INSTANT 3 /' 'sub(/1[.]/, "2.")')" '2.00000 IS NOT '
 fault 'a power of ten' far_small "$(first '/1[.]E-06/' 'sub(/1[.]E-06/, "1.E-05")')" '*IS NOT*'

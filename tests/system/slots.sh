@@ -2,8 +2,8 @@
 # Card SLOT: its results are those of a block with a REVOLUTE and a PRISM pair, to the last digit, and the block is nowhere.
 . tests/counting.sh
 
-# whole NAME BLOCK: the deck, and the deck with a block in the place of its first SLOT card: LINK STONE, its pin at PIN, and the
-# pairs. BLOCK: the cards of the block and its pairs, ^ between them.
+# whole NAME BLOCK: the deck, and the deck with a block in the place of its first SLOT card: LINK STONE, its pin at
+# PIN, and the pairs. BLOCK: the cards of the block and its pairs, ^ between them.
 whole() {
    name=$1
    awk -v block="$2" '/^SLOT/ && !k++ { n = split(block, cards, "^"); for (i = 1; i <= n; i++) print cards[i]; next } { print }' \
