@@ -1,6 +1,6 @@
 # To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
 # a point, whatever the user's language. `kinmat` and `debug` are the command in both builds; `w` is an empty
-# directory for the files of the test. All are paths from the root, for scripts that go elsewhere.
+# directory for the files of the test. Their paths begin at the root, for scripts that change their directory.
 BUILD=${BUILD:-build}
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
 kinmat=$BUILD/kinmat debug=$BUILD/debug/kinmat
@@ -28,7 +28,8 @@ conclude() {
    [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }
 
-# by_libraries NAME DECK LISTING: by the reference LAPACK and by OpenBLAS, if both are installed, it has this listing
+# by_libraries NAME DECK LISTING: the deck has this listing with the reference LAPACK and with OpenBLAS, if both are
+# there (`both`)
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 both=no
@@ -81,7 +82,7 @@ says() {
    equal "$name: sentence" "$words" "$(cat "$w/err")"
 }
 
-# rejected NAME STATUS WORDS ARGUMENT...: the command also prints no listing
+# rejected NAME STATUS WORDS ARGUMENT...: as `says`, and the command prints no listing
 rejected() {
    says "$@"
    equal "$1: no listing" '' "$(cat "$w/out")"
