@@ -120,7 +120,6 @@ contains
       type(scene_t), intent(inout) :: s
       real(wp) :: lift, times(4)
       integer :: law
-      logical :: finite
 
       lift = s%singular - s%start
       times = [0.5_wp, 2.0_wp, 4.0_wp, 2.0_wp]
@@ -152,7 +151,7 @@ contains
       if (s%has_card) s%m%branch_requests = [branch_request_t(t=times(merge(1, 3, chance(d, 0.5_wp)))*0.95_wp)]
       s%m%t0 = 0.0_wp
       s%m%t1 = 7.0_wp
-      call find_links(s, s%start, s%side, s%m%links%position(1), s%m%links%position(2), s%m%links%position(3), finite)
+      call find_links(s, s%start, s%side, s%m%links%position(1), s%m%links%position(2), s%m%links%position(3))
    end subroutine throw_rises
 
    !> Whether all instants of `s` have the positions of the closed form, and zero rates in the dwell.
@@ -164,7 +163,7 @@ contains
       type(drive_t) :: law
       real(wp) :: x(4), y(4), phi(4), f(3), off, sine, allowed, t
       integer :: k, side
-      logical :: finite, changes, stands
+      logical :: changes, stands
 
       is_followed = .true.
       call make_analysis(a, s%m)
@@ -188,7 +187,7 @@ contains
             f = drive_motion(law, t)
             side = s%side
             if ((s%goes_on .neqv. changes) .and. t > rises(2)%r(1)) side = -side
-            call find_links(s, f(1), side, x, y, phi, finite)
+            call find_links(s, f(1), side, x, y, phi)
             sine = dyad_sine(s, f(1))
             allowed = min(root, rounding/max(sine, epsilon(sine)))
             if (changes .and. q%known == 0 .and. t > rises(2)%r(1)) allowed = either
@@ -205,20 +204,17 @@ contains
       end associate
    end function is_followed
 
-   !> The links (4) of `s` at the drive's value `v`, with the dyad on the given `side`; `finite`: there is such a
-   !> position.
-   subroutine find_links(s, v, side, x, y, phi, finite)
+   !> The links (4) of `s` at the drive's value `v`, with the dyad on the given `side`.
+   subroutine find_links(s, v, side, x, y, phi)
       type(scene_t), intent(in) :: s
       real(wp), intent(in) :: v
       integer, intent(in) :: side
       real(wp), intent(out) :: x(4), y(4), phi(4)
-      logical, intent(out) :: finite
       real(wp) :: way(2), diagonal, cosine
 
       x = 0.0_wp
       y = 0.0_wp
       phi = 0.0_wp
-      finite = .true.
       select case (s%kind)
       case (kind_slider)
          phi(2) = v
@@ -254,9 +250,8 @@ contains
       type(scene_t), intent(in) :: s
       real(wp), intent(in) :: v
       real(wp) :: x(4), y(4), phi(4)
-      logical :: finite
 
-      call find_links(s, v, s%side, x, y, phi, finite)
+      call find_links(s, v, s%side, x, y, phi)
       select case (s%kind)
       case (kind_slider)
          sine = abs(cos(phi(3)))
