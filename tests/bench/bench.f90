@@ -4,7 +4,8 @@
 !>    bench sines COUNT                  errors of the lanes' sines, no clock; exit status 1 if any is large
 !>    bench lanes DECKS                  time a step of a variant in lanes
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS
-!>    bench scene NAME [N DECKS]         a line for another program: the time of a step of input/NAME.deck, or of a chain,
+!>    bench scene NAME [N DECKS]         a line for another program: the time of a step of input/NAME.deck, or of a
+!> chain,
 !>                                       by the closed form and by the blocks, in ns; characteristic length and rate
 !>    bench results DECKS STEPS DECK...  results compared, no clock; exit status 1 if any differ
 program bench

@@ -228,7 +228,8 @@ contains
             end associate
          end do
       case ('scissor')
-         ! The feet of stage i = 0, 1, ... are 2 i sin phi above the ground, the right ones 2 cos phi from the left ones.
+         ! The feet of stage i = 0, 1, ... are 2 i sin phi above the ground, the right ones 2 cos phi from the left
+         ! ones.
          phi = 0.4_qp + time_jet(t)
          links = [links, body('', place_t(2.0_qp*cos(phi), flat), flat)]
          do i = 0, c%n/2 - 1

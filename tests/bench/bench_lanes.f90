@@ -1,5 +1,5 @@
-!> Tests. Variants in the lanes of the processor: the time of a step of one of them beside the closed form, and the errors
-!> of the lanes' sines.
+!> Tests. Variants in the lanes of the processor: the time of a step of one of them beside the closed form, and the
+!> errors of the lanes' sines.
 module bench_lanes
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -46,14 +46,16 @@ contains
             time(i, 2, k) = time_of(scenes(i), .true.)
          end do
       end do
-      print '(a)', '', ' VARIANTS IN LANES, 3600 STEPS A TURN: A STEP OF ONE VARIANT, FROM THE THIRD INSTANT TO THE LAST', &
+      print '(a)', '', &
+         ' VARIANTS IN LANES, 3600 STEPS A TURN: A STEP OF ONE VARIANT, FROM THE THIRD INSTANT TO THE LAST', &
          ' RATIO, BEST AND NS AS ABOVE; EXTREMES: of all links', '', &
          ' MECHANISM             RATIO   LEAST    MOST    BEST      NS'
       do i = 1, size(scenes)
          do with = 1, 2
             ratio = spread_of(time(i, with, :)/closed(i, :))
             own = spread_of(time(i, with, :)*nano)
-            print '(1x, a10, 1x, a8, 5a8)', scenes(i)%name//repeat(' ', 10), trim(merge('EXTREMES', '        ', with == 2)) &
+            print '(1x, a10, 1x, a8, 5a8)', scenes(i)%name//repeat(' ', 10), trim(merge('EXTREMES', '        ', &
+               with == 2)) &
                //repeat(' ', 8), figure(ratio%median), figure(ratio%least), figure(ratio%most), &
                figure(own%least/(nano*minval(closed(i, :)))), figure(own%median)
          end do
@@ -86,15 +88,16 @@ contains
       if (.not. all(runs%is_over) .or. any(runs%counts%flagged > 0)) error stop 'A VARIANT OF THE BENCH HAS NO MOTION'
    end function time_of
 
-   !> Compares the lanes' sines and cosines of `count` angles with those of real128; ends with status 1 if one is off by more
-   !> than 0.8 of its last digit.
+   !> Compares the lanes' sines and cosines of `count` angles with those of real128; ends with status 1 if one is off by
+   !> more than 0.8 of its last digit.
    subroutine judge_sines(count)
       integer, intent(in) :: count
       type(certificate_counts_t) :: tally
       real(wp) :: largest
 
       largest = max(largest_sine_error(count/2, 7.0_wp), largest_sine_error(count/2, max_angle))
-      print '(a, i0, a, f5.3)', ' SINES AND COSINES IN LANES OF ', count, ' ANGLES: THE LARGEST ERROR IN LAST DIGITS: ', largest
+      print '(a, i0, a, f5.3)', ' SINES AND COSINES IN LANES OF ', count, &
+         ' ANGLES: THE LARGEST ERROR IN LAST DIGITS: ', largest
       call count_one(tally, largest < 0.8_wp, 'sines and cosines')
       call conclude(tally)
    end subroutine judge_sines

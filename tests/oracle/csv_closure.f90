@@ -22,9 +22,10 @@ module csv_closure
    !> Equations that are too many may contradict one another by this in positions, and by this in rates: so much the
    !> program says that it allows them, and ten times as much for the norm that it measures rates in.
    real(qp), parameter :: contradiction(0:2) = [1.0e-10_qp, 1.0e-7_qp, 1.0e-7_qp]
-   !> With a closing tolerance by that, and rates by so many times that and at most a tenth; of the length of a loop, which
-   !> is longer than what is in a row.
-   real(qp), parameter :: rates_of_closing(0:2) = [1.0_qp, 100.0_qp, 100.0_qp], held_rates = 0.1_qp, shorter_row = 10.0_qp
+   !> With a closing tolerance by that, and rates by so many times that and at most a tenth; of the length of a loop,
+   !> which is longer than what is in a row.
+   real(qp), parameter :: rates_of_closing(0:2) = [1.0_qp, 100.0_qp, 100.0_qp], held_rates = 0.1_qp, &
+      shorter_row = 10.0_qp
    !> Beyond this a Jacobian counts as singular in double precision, and no rates are to be told.
    real(qp), parameter :: worst_condition = 1.0e10_qp
    !> Products of numbers near the end of the range lose digits: what is below tiny is nothing.

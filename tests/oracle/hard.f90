@@ -39,7 +39,8 @@ program hard
 
    call get_command_argument(1, argument)
    short = argument == 'short'
-   print '(a)', ' ERRORS OVER EPS TIMES THE SUM OF WHAT EACH NUMBER OF THE DECK DOES; CONDITION: THE LARGEST SUM OF A POSITION', &
+   print '(a)', &
+      ' ERRORS OVER EPS TIMES THE SUM OF WHAT EACH NUMBER OF THE DECK DOES; CONDITION: THE LARGEST SUM OF A POSITION', &
       '', ' SCENE                        LINKS  INSTANTS  FLAGGED  CONDITION  POSITION  VELOCITY    ACCEL.'
    do i = 2, command_argument_count()
       call get_command_argument(i, argument)
@@ -206,7 +207,8 @@ contains
       logical :: good
 
       good = all(errors%worst <= bound)
-      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), errors%flagged, &
+      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), &
+         errors%flagged, &
          errors%condition, min(errors%worst, 1.0e7_qp), trim(merge('       ', ' FAILED', good))
       flush (output_unit)
       call count_one(tally, good, s%name)

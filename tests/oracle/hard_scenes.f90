@@ -7,7 +7,8 @@ module hard_scenes
    use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count
    use deck_tally, only: deck_name, sets_of
    use jet_drives, only: drive_jet
-   use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, flat
+   use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, &
+      flat
    use closed_forms, only: closed_form
    use hand_links, only: sort_links
    use sample_mechanisms, only: four_bar, crank_slider, magnified

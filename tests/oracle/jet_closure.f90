@@ -152,8 +152,8 @@ contains
       r = jets%v
    end function closure
 
-   !> Derivatives (equations, unknowns) of the residuals by x, y, phi of every moving link, in order, where the links are at `b`:
-   !> column by column from unit velocities.
+   !> Derivatives (equations, unknowns) of the residuals by x, y, phi of every moving link, in order, where the links
+   !> are at `b`: column by column from unit velocities.
    function closure_slopes(m, d, b) result(slopes)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: d(:)

@@ -44,7 +44,8 @@ contains
       do c = 1, size(slopes, 1)
          a(c, :) = real(slopes(c, :)/max(maxval(abs(slopes(c, :))), tiny(1.0_wp)*1.0_qp), wp)
       end do
-      call gesvd('A', 'A', size(a, 1), n, a, size(a, 1), s, left, size(left, 1), right, size(right, 1), work, size(work), info)
+      call gesvd('A', 'A', size(a, 1), n, a, size(a, 1), s, left, size(left, 1), right, size(right, 1), work, &
+         size(work), info)
       if (info == 0 .and. s(n) > 0.0_wp) condition = real(s(1), qp)/s(n)
    end function condition
 

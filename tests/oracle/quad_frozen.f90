@@ -23,23 +23,12 @@ module quad_frozen
 
 contains
 
-   !> `body_vectors` (2, points) for the arms; the slot rows as printed.
-   pure type(references_t) function references_of_arms(m, body_vectors) result(z)
-      type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: body_vectors(:, :)
-
-      z%body_vectors = body_vectors
-      allocate (z%normals(2, size(m%pairs)), source=0.0_qp)
-      z%slot = slot_as_printed
-   end function references_of_arms
-
-   !> The print's own choice, (15) and (16): every angle is counted from the x axis.
+   !> The print's own choice, (15) and (16): every angle is counted from the x axis, the slot rows as printed.
    pure type(references_t) function printed_references(m) result(z)
       type(mechanism_t), intent(in) :: m
-      real(qp) :: from_x_axis(2, size(m%points))
 
-      from_x_axis = 0.0_qp
-      z = references_of_arms(m, from_x_axis)
+      allocate (z%body_vectors(2, size(m%points)), z%normals(2, size(m%pairs)), source=0.0_qp)
+      z%slot = slot_as_printed
    end function printed_references
 
    !> The zeros of the cosine and the sine nearest to where `q` (3, links) has the arms and normals.

@@ -30,7 +30,8 @@ contains
       rho = exp(logarithm/2.0_qp**squarings)
    end function spectral_radius
 
-   !> Replaces `b` (n, any number) by a^-1 b; `a` becomes its factors. `singular`: a pivot is rounding, and `b` is as it was.
+   !> Replaces `b` (n, any number) by a^-1 b; `a` becomes its factors. `singular`: a pivot is rounding, and `b` is as it
+   !> was.
    pure subroutine solve_quad(a, b, singular)
       real(qp), intent(inout) :: a(:, :), b(:, :)
       logical, intent(out) :: singular

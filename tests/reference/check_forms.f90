@@ -5,7 +5,8 @@
 program check_forms
    use failures, only: failure_t
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_t, drive_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
+   use mechanism, only: mechanism_t, pair_t, drive_t, instant_count, instant, pair_revolute, drive_angle, drive_x, &
+      drive_y, &
       drive_relangle, drive_slide
    use scales, only: characteristic_length, characteristic_rate
    use structure, only: structure_report_t, find_structure
@@ -84,7 +85,8 @@ contains
       end do
    end subroutine check_set
 
-   !> The numbers of the deck that place anything, as `numbers_of` of jet_closure has them, but what stands on the cards.
+   !> The numbers of the deck that place anything, as `numbers_of` of jet_closure has them, but what stands on the
+   !> cards.
    function numbers_on_cards(m) result(d)
       type(mechanism_t), intent(in) :: m
       real(qp), allocatable :: d(:)

@@ -17,8 +17,8 @@ module closed_forms
 
 contains
 
-   !> The links of the mechanism `name` at the time `t`, in its set number `set`, or in that variant of its only set; none for an
-   !> unknown name. The angles are on any branch: whoever asks brings them to the branch wanted.
+   !> The links of the mechanism `name` at the time `t`, in its set number `set`, or in that variant of its only set;
+   !> none for an unknown name. The angles are on any branch: whoever asks brings them to the branch wanted.
    pure function closed_form(name, set, t) result(links)
       character(*), intent(in) :: name
       integer, intent(in) :: set

@@ -1,6 +1,6 @@
-!> Tests. All assemblies of the decks with cards ASSEMBLY and CIRCUITS: a platform on three legs by its polynomial of degree six
-!> (Gosselin and Sefrioui 1991; Merlet, Parallel Robots), a four-bar by the law of cosines. Roots are bracketed by those of
-!> the derivatives, so none is missed.
+!> Tests. All assemblies of the decks with cards ASSEMBLY and CIRCUITS: a platform on three legs by its polynomial of
+!> degree six (Gosselin and Sefrioui 1991; Merlet, Parallel Robots), a four-bar by the law of cosines. Roots are
+!> bracketed by those of the derivatives, so none is missed.
 module closed_forms_assemblies
    use quad_jet, only: qp, constant_jet
    use closed_forms_dyads, only: place_t, body_t, base, fixed_place, body, direction
@@ -10,14 +10,15 @@ module closed_forms_assemblies
 
    !> Joints of the base and of the platform, and the legs between them.
    real(qp), parameter :: feet(2, 3) = reshape([0.0_qp, 0.0_qp, 15.91_qp, 0.0_qp, 0.0_qp, 10.0_qp], [2, 3])
-   real(qp), parameter :: plate(2, 3) = reshape([0.0_qp, 0.0_qp, 17.04_qp, 0.0_qp, 13.2363732394_qp, 16.0967084668_qp], [2, 3])
+   real(qp), parameter :: plate(2, 3) = reshape([0.0_qp, 0.0_qp, 17.04_qp, 0.0_qp, &
+      13.2363732394_qp, 16.0967084668_qp], [2, 3])
    real(qp), parameter :: leg(3) = [14.98_qp, 15.38_qp, 12.0_qp]
 
 contains
 
-   !> All positions (3, any number) of the platform, x, y, phi. Its joints 2 and 3 are at their distances from the base if
-   !> P x + Q y + S = 0, which give x = X/D, y = Y/D; joint 1 if X^2 + Y^2 = leg^2 D^2. With t = tan(phi/2) all are polynomials,
-   !> and that equation is 1 + t^2 times one of degree six.
+   !> All positions (3, any number) of the platform, x, y, phi. Its joints 2 and 3 are at their distances from the base
+   !> if P x + Q y + S = 0, which give x = X/D, y = Y/D; joint 1 if X^2 + Y^2 = leg^2 D^2. With t = tan(phi/2) all are
+   !> polynomials, and that equation is 1 + t^2 times one of degree six.
    pure function platform_assemblies() result(position)
       real(qp), allocatable :: position(:, :)
       real(qp) :: p(0:2, 2), q(0:2, 2), s(0:2, 2), x(0:4), y(0:4), d(0:4), f(0:8), sextic(0:6)
@@ -44,13 +45,13 @@ contains
       roots = real_roots(sextic)
       allocate (position(3, size(roots)))
       do k = 1, size(roots)
-         position(:, k) = refined([value_of(x, roots(k))/value_of(d, roots(k)), value_of(y, roots(k))/value_of(d, roots(k)), &
-            2.0_qp*atan(roots(k))])
+         position(:, k) = refined([value_of(x, roots(k))/value_of(d, roots(k)), &
+            value_of(y, roots(k))/value_of(d, roots(k)), 2.0_qp*atan(roots(k))])
       end do
    end function platform_assemblies
 
-   !> The position `at` after a step of Newton's method on the lengths of the legs: the coefficients of the polynomial have lost
-   !> two digits.
+   !> The position `at` after a step of Newton's method on the lengths of the legs: the coefficients of the polynomial
+   !> have lost two digits.
    pure function refined(at) result(position)
       real(qp), intent(in) :: at(3)
       real(qp) :: position(3), joint(2), turned(2), rows(3, 3), gap(3), one(3, 3)

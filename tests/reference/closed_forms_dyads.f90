@@ -1,11 +1,14 @@
-!> Tests. The words in which the closed forms are written: points, links and dyads, as jets in real128. Every formula is plane
-!> trigonometry; none of the program's equations or solvers is used.
+!> Tests. The words in which the closed forms are written: points, links and dyads, as jets in real128. Every formula is
+!> plane trigonometry; none of the program's equations or solvers is used.
 module closed_forms_dyads
-   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
+   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, &
+      atan2
    implicit none
    private
-   public :: place_t, body_t, flat, origin, base, fixed_place, body, motion_of, place_on, polar, direction, distance_squared, &
-      third_corner, corner, mirrored, swapped, on_line, four_bar_links, bars, slider_crank, drawn_link, natural_spline_3
+   public :: place_t, body_t, flat, origin, base, fixed_place, body, motion_of, place_on, seen_from, polar, direction, &
+      distance_squared, third_corner, corner, mirrored, swapped, on_line, four_bar_links, bars, slider_crank, &
+      drawn_link, &
+      natural_spline_3
 
    !> A point of the plane.
    type :: place_t
@@ -59,6 +62,15 @@ contains
       p%x = b%x + xi*cos(b%phi) - eta*sin(b%phi)
       p%y = b%y + xi*sin(b%phi) + eta*cos(b%phi)
    end function place_on
+
+   !> The point `p` of the plane in the axes of a link.
+   pure type(place_t) function seen_from(b, p) result(q)
+      type(body_t), intent(in) :: b
+      type(place_t), intent(in) :: p
+
+      q%x = (p%x - b%x)*cos(b%phi) + (p%y - b%y)*sin(b%phi)
+      q%y = (p%y - b%y)*cos(b%phi) - (p%x - b%x)*sin(b%phi)
+   end function seen_from
 
    !> The point at the distance `length` from `p` in the direction `phi`.
    pure type(place_t) function polar(p, length, phi) result(q)
@@ -137,16 +149,16 @@ contains
       type(place_t), intent(in) :: p, o
       real(qp), intent(in) :: length, side
       type(jet_t), intent(in) :: phi
-      type(jet_t) :: along, across
+      type(place_t) :: seen
+      type(jet_t) :: along
 
-      along = (p%x - o%x)*cos(phi) + (p%y - o%y)*sin(phi)
-      across = (p%y - o%y)*cos(phi) - (p%x - o%x)*sin(phi)
-      along = along + side*sqrt(length**2 - across*across)
+      seen = seen_from(body('', o, phi), p)
+      along = seen%x + side*sqrt(length**2 - seen%y*seen%y)
       q = place_t(o%x + along*cos(phi), o%y + along*sin(phi))
    end function on_line
 
-   !> A four-bar on a base along the x axis with its crank at `phi`: `lengths` of crank, coupler, rocker and base; `side`
-   !> as in third_corner, seen from the crank's pin to the foot of the rocker.
+   !> A four-bar on a base along the x axis with its crank at `phi`: `lengths` of crank, coupler, rocker and base;
+   !> `side` as in third_corner, seen from the crank's pin to the foot of the rocker.
    pure function four_bar_links(phi, lengths, side) result(links)
       type(jet_t), intent(in) :: phi
       real(qp), intent(in) :: lengths(4), side
@@ -164,11 +176,12 @@ contains
       type(place_t), intent(in) :: a, b, b0
       type(body_t) :: links(4)
 
-      links = [base, body('CRANK', origin, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+      links = [base, body('CRANK', origin, phi), body('COUPLER', a, direction(a, b)), &
+               body('ROCKER', b0, direction(b0, b))]
    end function bars
 
-   !> A crank about (0, 0) at `phi`, a rod and a piston on the line through `o` in the direction `slope`, along which its axes
-   !> lie; `lengths` of crank and rod. The piston is at the far end of the rod.
+   !> A crank about (0, 0) at `phi`, a rod and a piston on the line through `o` in the direction `slope`, along which
+   !> its axes lie; `lengths` of crank and rod. The piston is at the far end of the rod.
    pure function slider_crank(phi, lengths, o, slope) result(links)
       type(jet_t), intent(in) :: phi, slope
       real(qp), intent(in) :: lengths(2)
@@ -178,7 +191,8 @@ contains
 
       pin = polar(origin, lengths(1), phi)
       piston = on_line(pin, lengths(2), o, slope, 1.0_qp)
-      links = [base, body('CRANK', origin, phi), body('ROD', pin, direction(pin, piston)), body('PISTON', piston, slope)]
+      links = [base, body('CRANK', origin, phi), body('ROD', pin, direction(pin, piston)), &
+               body('PISTON', piston, slope)]
    end function slider_crank
 
    !> The link `name` with the points `p` and `q`, which are drawn at `p_drawn` and `q_drawn`, as the origin of its axes

@@ -1,5 +1,6 @@
-!> Tests. Closed forms of the four-bars, also of those with a symmetry, which pass change points or take the other branch there.
-!> The lengths are those of the decks in input/, written out again by hand so that a deck read wrongly shows up as a difference.
+!> Tests. Closed forms of the four-bars, also of those with a symmetry, which pass change points or take the other
+!> branch there. The lengths are those of the decks in input/, written out again by hand so that a deck read wrongly
+!> shows up as a difference.
 module closed_forms_four_bars
    use kinds, only: wp
    use quad_jet
@@ -78,8 +79,8 @@ contains
       end select
    end function four_bars
 
-   !> Crank 2, coupler 1.5, rocker 3 on a base of 4; the crank at 57 deg + 5 deg t. `side`: 1 with the joint B to the left of
-   !> the way from A to B0.
+   !> Crank 2, coupler 1.5, rocker 3 on a base of 4; the crank at 57 deg + 5 deg t. `side`: 1 with the joint B to the
+   !> left of the way from A to B0.
    pure function triple_rocker(time, side) result(links)
       type(jet_t), intent(in) :: time
       real(qp), intent(in) :: side
@@ -88,8 +89,8 @@ contains
       links = four_bar_links((57.0_qp + 5.0_qp*time)*degree_q, [2.0_qp, 1.5_qp, 3.0_qp, 4.0_qp], side)
    end function triple_rocker
 
-   !> The crank's angle (deg): by each law of a rise it goes from 30 to 91.64 deg and back; in set 5 it turns at 1500 turns a
-   !> minute, t in milliseconds, less a rise of 96 deg.
+   !> The crank's angle (deg): by each law of a rise it goes from 30 to 91.64 deg and back; in set 5 it turns at 1500
+   !> turns a minute, t in milliseconds, less a rise of 96 deg.
    pure type(jet_t) function rise_dwell(set, time) result(phi)
       integer, intent(in) :: set
       type(jet_t), intent(in) :: time

@@ -1,5 +1,6 @@
-!> Tests. Closed forms of linkages with revolute pairs and more than four links: chains of dyads, and those with a symmetry. The
-!> lengths are those of the decks in input/, written out again by hand so that a deck read wrongly shows up as a difference.
+!> Tests. Closed forms of linkages with revolute pairs and more than four links: chains of dyads, and those with a
+!> symmetry. The lengths are those of the decks in input/, written out again by hand so that a deck read wrongly shows
+!> up as a difference.
 module closed_forms_linkages
    use kinds, only: wp
    use quad_jet
@@ -27,7 +28,8 @@ contains
          ! The right crank is given against the left: 60 deg + 20 deg a second, so it turns twice as fast.
          links = five_bar(20.0_qp*degree_q*time, 20.0_qp*degree_q*time + (60.0_qp + 20.0_qp*time)*degree_q)
       case ('pantograph')
-         if (set == 1) links = pantograph(place_t(1.2_qp + 0.3_qp*sin(time), 0.4_qp + 0.25_qp*sin(2.0_qp*time + 0.5_qp)))
+         if (set == 1) links = pantograph(place_t(1.2_qp + 0.3_qp*sin(time), &
+            0.4_qp + 0.25_qp*sin(2.0_qp*time + 0.5_qp)))
          if (set == 2) links = pantograph(place_t(1.0_qp + 0.25_qp*time, 0.75_qp - 0.5_qp*time + 0.1_qp*time*time))
       case ('two_loops'); links = two_loops(time)
       case ('watt'); links = watt(40.0_qp*degree_q*time)
@@ -62,7 +64,8 @@ contains
       b = corner(origin, arm, p, bar, -1.0_qp)
       links = [base, body('CRANK', m, phi), body('ARM-A', origin, direction(origin, a)), &
                body('ARM-B', origin, direction(origin, b)), body('BAR-AC', a, direction(a, c)), &
-               body('BAR-BC', b, direction(b, c)), body('BAR-AP', a, direction(a, p)), body('BAR-BP', b, direction(b, p))]
+               body('BAR-BC', b, direction(b, c)), body('BAR-AP', a, direction(a, p)), &
+               body('BAR-BP', b, direction(b, p))]
    end function peaucellier
 
    !> Hart's inversor: antiparallelogram A B C D, AB = CD = 4, BC = DA = 2, pivoted in the middle O of AB; the middle P
@@ -79,8 +82,9 @@ contains
       b = place_t(-a%x, -a%y)
       d = place_t(2.0_qp*p%x - a%x, 2.0_qp*p%y - a%y)
       c = swapped(a, b, d)
-      links = [base, body('CRANK', m, phi), body('BAR-AB', origin, direction(a, b)), body('BAR-BC', b, direction(b, c)), &
-               body('BAR-CD', c, direction(c, d)), body('BAR-DA', a, direction(a, d))]
+      links = [base, body('CRANK', m, phi), body('BAR-AB', origin, direction(a, b)), &
+               body('BAR-BC', b, direction(b, c)), body('BAR-CD', c, direction(c, d)), &
+               body('BAR-DA', a, direction(a, d))]
    end function hart
 
    !> Five-bar: cranks 1 at (0, 0) and (3, 0) at the angles `left` and `right`, couplers 3 and 3 that meet above.
@@ -115,8 +119,8 @@ contains
                body('ROD-CD', c, phi_arm + pi_q)]
    end function pantograph
 
-   !> Two mechanisms on one base, each with its own drive: the crank-rocker, and at (1, -4) a crank 1.5 with a rod 4 to a
-   !> piston on the line through (1, -4) at -30 deg.
+   !> Two mechanisms on one base, each with its own drive: the crank-rocker, and at (1, -4) a crank 1.5 with a rod 4 to
+   !> a piston on the line through (1, -4) at -30 deg.
    pure function two_loops(time) result(links)
       type(jet_t), intent(in) :: time
       type(body_t) :: links(7), slider(4)
@@ -130,8 +134,8 @@ contains
       links(5)%name = 'CRANK-2'
    end function two_loops
 
-   !> Watt's second six-bar: the crank-rocker, whose rocker's second arm ends in C = (1.2, -1.6) of its axes; rod CD = 4,
-   !> output D0 D = 3 about (9, 0).
+   !> Watt's second six-bar: the crank-rocker, whose rocker's second arm ends in C = (1.2, -1.6) of its axes; rod CD =
+   !> 4, output D0 D = 3 about (9, 0).
    pure function watt(phi) result(links)
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(6)
@@ -295,7 +299,7 @@ contains
       w = place_on(upper, xi, eta)
       v = corner(w, 39.4_qp, c, 36.7_qp, -1.0_qp)
       links = [base, body('CRANK', origin, phi), body('ROD-J', p, direction(p, x)), upper, &
-               body('ROD-K', p, direction(p, c)), body('ROD-C', b, direction(b, c)), body('ROD-F', w, direction(w, v)), &
-               body('FOOT', c, direction(c, v))]
+               body('ROD-K', p, direction(p, c)), body('ROD-C', b, direction(b, c)), &
+               body('ROD-F', w, direction(w, v)), body('FOOT', c, direction(c, v))]
    end function jansen
 end module closed_forms_linkages

@@ -32,8 +32,8 @@ contains
       end select
    end function published
 
-   !> Ten plates. The cylinders A-D (C4, C3) and B-H (C6, C5), whose lengths are driven, have the directions 1.249... and
-   !> 1.325... in their links' axes. D lies to the right of A E, H to that of B G; then come two dyads, where I lies
+   !> Ten plates. The cylinders A-D (C4, C3) and B-H (C6, C5), whose lengths are driven, have the directions 1.249...
+   !> and 1.325... in their links' axes. D lies to the right of A E, H to that of B G; then come two dyads, where I lies
    !> to the right of F J, N to the left of K L.
    pure function ten_plates(time) result(links)
       type(jet_t), intent(in) :: time
@@ -68,7 +68,8 @@ contains
                link_at('C10', l, -0.2_qp, -0.25_qp, turned(l, n, 0.3_qp, 0.5_qp))]
    end function ten_plates
 
-   !> Teaching four-bar: crank 1.52 about (0, 0) at the angle `phi`, the rocker about (4.572, 0); C lies to the left of B D.
+   !> Teaching four-bar: crank 1.52 about (0, 0) at the angle `phi`, the rocker about (4.572, 0); C lies to the left of
+   !> B D.
    pure function teaching_four_bar(phi) result(links)
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(4), crank
@@ -82,8 +83,8 @@ contains
                body('CDEI', d, turned(d, c, -0.342_qp, 3.029_qp))]
    end function teaching_four_bar
 
-   !> Watt's first six-bar: crank AB about (-3.74, -2.41) at the angle `phi`, CFG about (7.32, -3.51); C lies to the left of
-   !> B G, E to that of D F.
+   !> Watt's first six-bar: crank AB about (-3.74, -2.41) at the angle `phi`, CFG about (7.32, -3.51); C lies to the
+   !> left of B G, E to that of D F.
    pure function watt_i(phi) result(links)
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(6), crank, bcd, cfg

@@ -23,7 +23,8 @@ contains
       select case (name)
       case ('three_rrr'); links = three_rrr(time)
       case ('three_rrr_cranks')
-         links = three_rrr_cranks([1.0_qp + 0.1_qp*sin(time), 3.1_qp + 0.15_qp*sin(1.5_qp*time), -0.02_qp*time - 0.8_qp])
+         links = three_rrr_cranks([1.0_qp + 0.1_qp*sin(time), 3.1_qp + 0.15_qp*sin(1.5_qp*time), &
+            -0.02_qp*time - 0.8_qp])
       case ('excavator'); links = excavator(time)
       case ('xy_table'); links = xy_table(time)
       case ('scissor'); links = scissor(1.8_qp - 0.35_qp*time + 0.03_qp*time*time)
@@ -31,7 +32,8 @@ contains
       end select
    end function robots
 
-   !> x, y and the angle of the platform are driven; every elbow lies to the left of the way from the base to the platform.
+   !> x, y and the angle of the platform are driven; every elbow lies to the left of the way from the base to the
+   !> platform.
    pure function three_rrr(time) result(links)
       type(jet_t), intent(in) :: time
       type(body_t) :: links(8), platform
@@ -50,8 +52,8 @@ contains
       end do
    end function three_rrr
 
-   !> The robot led by its cranks at the angles `crank`. Where its platform is then has no formula (a polynomial of degree six):
-   !> the three equations |P - E|^2 = 9 by Newton's method in real128.
+   !> The robot led by its cranks at the angles `crank`. Where its platform is then has no formula (a polynomial of
+   !> degree six): the three equations |P - E|^2 = 9 by Newton's method in real128.
    pure function three_rrr_cranks(crank) result(links)
       type(jet_t), intent(in) :: crank(3)
       type(body_t) :: links(8), platform

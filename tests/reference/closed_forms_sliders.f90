@@ -31,8 +31,10 @@ contains
          ! Driven by the crank through both dead points.
          links = slider_crank(15.0_qp*degree_q*time, [1.0_qp, 1.001_qp], origin, flat)
       case ('yoke', 'jarzmowy', 'yoke_mirrored')
-         ! The paper's yoke mechanism: r = 1, l1 = 4, l2 = 2, a = 2, b = 5, the ram to the right or (mirrored) to the left.
-         links = slotted_lever(merge(30.0_qp*degree_q*time, 0.1_qp*time*time, set == 1), 2.0_qp, 1.0_qp, 4.0_qp, 2.0_qp, &
+         ! The paper's yoke mechanism: r = 1, l1 = 4, l2 = 2, a = 2, b = 5, the ram to the right or (mirrored) to the
+         ! left.
+         links = slotted_lever(merge(30.0_qp*degree_q*time, 0.1_qp*time*time, set == 1), 2.0_qp, 1.0_qp, 4.0_qp, &
+            2.0_qp, &
             5.0_qp, merge(-1.0_qp, 1.0_qp, name == 'yoke_mirrored'))
       case ('whitworth')
          ! Whitworth's quick return: the arm's tail is behind the pivot.
@@ -71,9 +73,9 @@ contains
       end select
    end function sliders
 
-   !> A crank at `phi` about (0, `height`) of the length `crank`, its pin in a block on a lever about (0, 0), which points to
-   !> it; a `rod` from the point at `tip` of the lever to a ram on the line y = `ram_height`, to the right (`side` = 1.0) or to
-   !> the left (-1.0).
+   !> A crank at `phi` about (0, `height`) of the length `crank`, its pin in a block on a lever about (0, 0), which
+   !> points to it; a `rod` from the point at `tip` of the lever to a ram on the line y = `ram_height`, to the right
+   !> (`side` = 1.0) or to the left (-1.0).
    pure function slotted_lever(phi, height, crank, tip, rod, ram_height, side) result(links)
       type(jet_t), intent(in) :: phi
       real(qp), intent(in) :: height, crank, tip, rod, ram_height, side
@@ -157,8 +159,9 @@ contains
                body('PISTON', piston, flat)]
    end function dead_point
 
-   !> The mechanism of `dead_point` with any `numbers` in its deck: the crank's pin and the rod's eye in their links' axes (1 to
-   !> 4), the direction of the guide (5), the piston's value, rate and acceleration at t = 0 (6 to 8), the instant (9).
+   !> The mechanism of `dead_point` with any `numbers` in its deck: the crank's pin and the rod's eye in their links'
+   !> axes (1 to 4), the direction of the guide (5), the piston's value, rate and acceleration at t = 0 (6 to 8), the
+   !> instant (9).
    pure function pushed_slider(numbers) result(links)
       real(qp), intent(in) :: numbers(9)
       type(body_t) :: links(4)
@@ -182,9 +185,9 @@ contains
                body('ROD', pin, direction(pin, eye) - atan2(rod(2), rod(1))), body('PISTON', eye, flat)]
    end function pushed_slider
 
-   !> Slider-crank drawn with its crank at (0.6, 0.8) from (0, 0) and the slider at (3, 0.5). In set 1 the slider stays on
-   !> y = 0.5, in set 2 it swings by 0.2 along a line that falls by 15 deg, its axes at 30 deg. The axes of crank and rod
-   !> lie in those of the drawing.
+   !> Slider-crank drawn with its crank at (0.6, 0.8) from (0, 0) and the slider at (3, 0.5). In set 1 the slider stays
+   !> on y = 0.5, in set 2 it swings by 0.2 along a line that falls by 15 deg, its axes at 30 deg. The axes of crank and
+   !> rod lie in those of the drawing.
    pure function drawn_slider(set, time) result(links)
       integer, intent(in) :: set
       type(jet_t), intent(in) :: time
@@ -208,8 +211,8 @@ contains
                body('SLIDER', slider, turned)]
    end function drawn_slider
 
-   !> Boom about (0, 0) with the eye of its cylinder drawn at (1.5, 1); the cylinder stands on (2, -1) and grows by 0.5 in
-   !> a unit of time from the length drawn. All axes lie in those of the drawing.
+   !> Boom about (0, 0) with the eye of its cylinder drawn at (1.5, 1); the cylinder stands on (2, -1) and grows by 0.5
+   !> in a unit of time from the length drawn. All axes lie in those of the drawing.
    pure function drawn_cylinder(time) result(links)
       type(jet_t), intent(in) :: time
       type(body_t) :: links(4)

@@ -1,7 +1,8 @@
-!> Tests. `error_estimates DECK...`: the errors that the program tells of its own results (--errors) beside their true errors
-!> against closed forms in real128. An estimate must not be below the error, for no number of any link at any instant, and of the
-!> largest of each instant no more than one in five may be more than 30 times too large. (A true error may by chance be small: one
-!> below a rounding of the number's size counts as that.) The last line is `N passed, N failed`.
+!> Tests. `error_estimates DECK...`: the errors that the program tells of its own results (--errors) beside their true
+!> errors against closed forms in real128. An estimate must not be below the error, for no number of any link at any
+!> instant, and of the largest of each instant no more than one in five may be more than 30 times too large. (A true
+!> error may by chance be small: one below a rounding of the number's size counts as that.) The last line is `N passed,
+!> N failed`.
 program error_estimates
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant_count, instant, request_link
@@ -116,7 +117,8 @@ contains
       counts%instants = counts%instants + count(size_of > 0.0_wp)
       counts%above = counts%above + count(max_told > max_above*max_true .and. size_of > 0.0_wp)
       do k = 0, 2
-         counts%ratio(k) = counts%ratio(k) + sum(log(max(max_told(:, k), tiny(1.0_wp))/max_true(:, k)), mask=size_of(:, &
+         counts%ratio(k) = counts%ratio(k) + sum(log(max(max_told(:, k), tiny(1.0_wp))/max_true(:, k)), &
+            mask=size_of(:, &
             k) > 0.0_wp)
       end do
    end subroutine weigh_instant

@@ -1,11 +1,10 @@
 !> Tests. The answers to cards ASSEMBLY and CIRCUITS as the listing must print them, from closed forms in real128.
 module hand_assemblies
-   use mechanism, only: mechanism_t
    use quad_jet, only: qp, degree_q, time_jet, wrap_angle
    use closed_forms_dyads, only: body_t
    use closed_forms_assemblies, only: platform_assemblies, platform, crank_limit
    use closed_forms_four_bars, only: triple_rocker
-   use hand_scales, only: hand_scales_t, length_by_hand
+   use hand_scales, only: listed_t, length_by_hand
    use hand_tables, only: instant_text
    use text_output, only: output_t, put
    implicit none
@@ -20,20 +19,18 @@ module hand_assemblies
 
 contains
 
-   !> The table of all assemblies of `m`, the deck called `name`.
-   subroutine put_assemblies_by_hand(o, name, m, scales)
+   !> The table of all assemblies of `m`.
+   subroutine put_assemblies_by_hand(o, m)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(found_t), allocatable :: list(:)
       character(80) :: line
       integer :: k
 
-      call find_all(name, m, list)
+      call find_all(m, list)
       call put(o, '')
-      call put(o, ' ASSEMBLIES   T = '//instant_text(scales, 0.0_qp)//' '//trim(m%time_unit))
-      if (name == 'platform') then
+      call put(o, ' ASSEMBLIES   T = '//instant_text(m, 0.0_qp)//' '//trim(m%time_unit))
+      if (m%name == 'platform') then
          call put(o, '   BLOCK 1: LINKS PLATFORM, LEG-1, LEG-2, LEG-3')
          call put(o, '      UNKNOWNS 4   PATHS 6 = 6 FINITE + 0 AT INFINITY + 0 FAILED   REAL 6')
       else
@@ -50,21 +47,20 @@ contains
       end do
    end subroutine put_assemblies_by_hand
 
-   !> All assemblies at t = 0, the nearest to the estimate first. Determinants: of the derivatives of the loops by the angles of
-   !> the links in the deck's order.
-   subroutine find_all(name, m, list)
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
+   !> All assemblies at t = 0, the nearest to the estimate first. Determinants: of the derivatives of the loops by the
+   !> angles of the links in the deck's order.
+   subroutine find_all(m, list)
+      type(listed_t), intent(in) :: m
       type(found_t), allocatable, intent(out) :: list(:)
       type(found_t) :: one
       real(qp), allocatable :: positions(:, :)
       integer :: i, k
 
-      if (name == 'platform') positions = platform_assemblies()
-      if (name /= 'platform') allocate (positions(0, 2))
+      if (m%name == 'platform') positions = platform_assemblies()
+      if (m%name /= 'platform') allocate (positions(0, 2))
       allocate (list(size(positions, 2)))
       do i = 1, size(list)
-         if (name == 'platform') then
+         if (m%name == 'platform') then
             one%links = platform(positions(:, i))
             one%determinant = platform_determinant(one%links)
          else
@@ -80,8 +76,8 @@ contains
       end do
    end subroutine find_all
 
-   !> Loops from foot 1 over the platform to feet 2 and 3, their derivatives by the angles of platform and legs: the legs 2 and 3
-   !> leave what their normals see of the platform's turn and of leg 1.
+   !> Loops from foot 1 over the platform to feet 2 and 3, their derivatives by the angles of platform and legs: the
+   !> legs 2 and 3 leave what their normals see of the platform's turn and of leg 1.
    real(qp) function platform_determinant(links) result(determinant)
       type(body_t), intent(in) :: links(:)
       real(qp) :: turn(2, 2), swing(2), across(2)
@@ -101,10 +97,10 @@ contains
       determinant = -(seen(1, 1)*seen(2, 2) - seen(1, 2)*seen(2, 1))
    end function platform_determinant
 
-   !> The root of the sum over the links of squares: of angles off the estimate, in rad, and of places, in characteristic
-   !> lengths, up to 0.25.
+   !> The root of the sum over the links of squares: of angles off the estimate, in rad, and of places, in
+   !> characteristic lengths, up to 0.25.
    real(qp) function distance_from(m, links) result(distance)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
       real(qp) :: off(3)
       integer :: i
@@ -118,10 +114,11 @@ contains
       distance = sqrt(distance)
    end function distance_from
 
-   !> The LINK cards: ten digits of the largest number, angles with seven decimals, less than half a turn off the estimate.
+   !> The LINK cards: ten digits of the largest number, angles with seven decimals, less than half a turn off the
+   !> estimate.
    subroutine put_links(o, m, links)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
       character(80) :: line
       character(40) :: form
@@ -138,8 +135,8 @@ contains
       end do
    end subroutine put_links
 
-   !> The circuits of the triple rocker. There is one; it begins where the motion from the estimate first turns back, at the
-   !> greatest angle of the crank, from where it returns on the other assembly.
+   !> The circuits of the triple rocker. There is one; it begins where the motion from the estimate first turns back, at
+   !> the greatest angle of the crank, from where it returns on the other assembly.
    subroutine put_circuits_by_hand(o)
       type(output_t), intent(inout) :: o
       character(120) :: line

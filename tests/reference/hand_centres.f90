@@ -2,19 +2,19 @@
 !> real128: the instant centre is the place that has one velocity in both links; the path of a point is written down in
 !> the axes of the link from which it is seen, and differentiated there. Nothing of the program's centres is used.
 module hand_centres
-   use mechanism, only: mechanism_t, request_t, request_pole
-   use quad_jet, only: qp, pi_q, degree_q, jet_t, operator(+), operator(-), operator(*), sin, cos
-   use closed_forms_dyads, only: body_t, place_t, place_on
-   use hand_scales, only: hand_scales_t
-   use hand_numbers, only: number_by_hand, field_length
+   use mechanism, only: request_t, request_pole
+   use quad_jet, only: qp, pi_q, degree_q
+   use closed_forms_dyads, only: body_t, place_t, fixed_place, place_on, seen_from
+   use hand_scales, only: listed_t
+   use hand_numbers, only: number_by_hand, power_text, field_length
    use text_output, only: output_t, put
    implicit none
    private
    public :: put_centre_heads_by_hand, put_centre_by_hand
 
    integer, parameter :: line_length = 18 + 7*field_length
-   !> What is smaller than this is 0 in all of these decks, whose lengths and rates are of the order of 1 to 1E6: it is a
-   !> rounding error of their numbers.
+   !> What is smaller than this is 0 in all of these decks, whose lengths and rates are of the order of 1 to 1E6: it is
+   !> a rounding error of their numbers.
    real(qp), parameter :: nothing = 1.0e-9_qp
    !> In English and in Polish, of poles and of curves.
    character(line_length), parameter :: heads(2, 2) = reshape([character(line_length) :: &
@@ -32,12 +32,10 @@ module hand_centres
 contains
 
    !> The lines over the rows of what `request` asks for.
-   subroutine put_centre_heads_by_hand(o, m, scales, request, language)
+   subroutine put_centre_heads_by_hand(o, m, request)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(request_t), intent(in) :: request
-      integer, intent(in) :: language
       character(field_length) :: power(7), unit(7)
       integer :: kind, columns
 
@@ -45,33 +43,30 @@ contains
       columns = merge(7, 6, kind == 1)
       unit = m%length_unit
       where (is_angle(:, kind)) unit = merge('DEG', 'RAD', m%degrees)
-      power = ''
-      if (scales%power(1, 0) /= 0) write (power, '("1.E", sp, i0.2)') spread(scales%power(1, 0), 1, 7)
+      power = power_text(m%scales%power(1, 0))
       where (is_angle(:, kind)) power = ''
-      call put(o, trim(heads(kind, language)))
+      call put(o, trim(heads(kind, m%language)))
       if (any(power /= '')) call put(o, trim(line_of('', '', power(:columns))))
       call put(o, trim(line_of('', '', unit(:columns))))
    end subroutine put_centre_heads_by_hand
 
    !> The row of `request`, of the links `b` in the order of the deck; `resting` (links): they have no velocity.
-   subroutine put_centre_by_hand(o, m, scales, b, request, resting, language)
+   subroutine put_centre_by_hand(o, m, b, request, resting)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
       logical, intent(in) :: resting(:)
-      integer, intent(in) :: language
       character(8) :: second
 
       if (request%kind == request_pole) then
-         call put(o, trim(line_of(m%links(request%second)%name, m%links(request%subject)%name, pole_fields(m, scales, &
-            b(request%second), b(request%subject), resting(request%second) .or. resting(request%subject), language))))
+         call put(o, trim(line_of(m%links(request%second)%name, m%links(request%subject)%name, &
+            pole_fields(m, b(request%second), b(request%subject), &
+            resting(request%second) .or. resting(request%subject)))))
       else
          second = ''
          if (request%second > 0) second = m%links(request%second)%name
-         call put(o, trim(line_of(m%points(request%subject)%name, second, curve_fields(m, scales, b, request, resting, &
-            language))))
+         call put(o, trim(line_of(m%points(request%subject)%name, second, curve_fields(m, b, request, resting))))
       end if
    end subroutine put_centre_by_hand
 
@@ -90,12 +85,10 @@ contains
    end function line_of
 
    !> The numbers of a pole. The plane of a link has the velocity c + w (-y, x) at (x, y), c = v - w (-y_o, x_o).
-   function pole_fields(m, scales, i, j, resting, language) result(fields)
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+   function pole_fields(m, i, j, resting) result(fields)
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: i, j
       logical, intent(in) :: resting
-      integer, intent(in) :: language
       character(field_length) :: fields(7)
       real(qp) :: c(2), w, p(2), u(2)
 
@@ -104,18 +97,18 @@ contains
       ! The relative velocity at the origin of link J.
       u = c + w*[-j%y%v, j%x%v]
       if (resting) then
-         fields = none_words(language)
+         fields = none_words(m%language)
       else if (abs(w) > nothing) then
          p = [-c(2), c(1)]/w
-         fields(1:2) = lengths(scales, p)
-         fields(3:4) = lengths(scales, in_axes(i, p))
-         fields(5:6) = lengths(scales, in_axes(j, p))
+         fields(1:2) = lengths(m, p)
+         fields(3:4) = lengths(m, in_axes(i, p))
+         fields(5:6) = lengths(m, in_axes(j, p))
          fields(7) = ''
       else if (norm2(u) > nothing) then
-         fields(:6) = infinite_words(language)
-         fields(7) = angle(m, scales, line_direction(-u(2), u(1)))
+         fields(:6) = infinite_words(m%language)
+         fields(7) = angle(m, line_direction(-u(2), u(1)))
       else
-         fields = rest_words(language)
+         fields = rest_words(m%language)
       end if
    end function pole_fields
 
@@ -132,22 +125,20 @@ contains
       type(body_t), intent(in) :: b
       real(qp), intent(in) :: p(2)
       real(qp) :: q(2)
+      type(place_t) :: seen
 
-      q = [(p(1) - b%x%v)*cos(b%phi%v) + (p(2) - b%y%v)*sin(b%phi%v), &
-           (p(2) - b%y%v)*cos(b%phi%v) - (p(1) - b%x%v)*sin(b%phi%v)]
+      seen = seen_from(b, fixed_place(p(1), p(2)))
+      q = [seen%x%v, seen%y%v]
    end function in_axes
 
    !> The numbers of a curve.
-   function curve_fields(m, scales, b, request, resting, language) result(fields)
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+   function curve_fields(m, b, request, resting) result(fields)
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
       logical, intent(in) :: resting(:)
-      integer, intent(in) :: language
       character(field_length) :: fields(6)
       type(place_t) :: p
-      type(jet_t) :: dx, dy
       real(qp) :: speed, turning
       logical :: no_velocity
 
@@ -157,25 +148,21 @@ contains
       end associate
       if (request%second > 0) then
          no_velocity = no_velocity .or. resting(request%second)
-         associate (from => b(request%second))
-            dx = p%x - from%x
-            dy = p%y - from%y
-            p = place_t(dx*cos(from%phi) + dy*sin(from%phi), dy*cos(from%phi) - dx*sin(from%phi))
-         end associate
+         p = seen_from(b(request%second), p)
       end if
       speed = hypot(p%x%d, p%y%d)
       turning = p%x%d*p%y%dd - p%y%d*p%x%dd
-      fields(1:2) = lengths(scales, [p%x%v, p%y%v])
+      fields(1:2) = lengths(m, [p%x%v, p%y%v])
       if (no_velocity) then
-         fields(3:) = none_words(language)
+         fields(3:) = none_words(m%language)
       else if (speed > nothing) then
-         fields(3) = angle(m, scales, arrow_direction(p%x%d, p%y%d))
-         fields(4:) = infinite_words(language)
-         if (abs(turning) > nothing*speed) fields(4:) = lengths(scales, [speed**3/abs(turning), &
+         fields(3) = angle(m, arrow_direction(p%x%d, p%y%d))
+         fields(4:) = infinite_words(m%language)
+         if (abs(turning) > nothing*speed) fields(4:) = lengths(m, [speed**3/abs(turning), &
             p%x%v - p%y%d*speed**2/turning, p%y%v + p%x%d*speed**2/turning])
       else
-         fields(3:) = rest_words(language)
-         if (hypot(p%x%dd, p%y%dd) > nothing) fields(3) = angle(m, scales, arrow_direction(p%x%dd, p%y%dd))
+         fields(3:) = rest_words(m%language)
+         if (hypot(p%x%dd, p%y%dd) > nothing) fields(3) = angle(m, arrow_direction(p%x%dd, p%y%dd))
       end if
    end function curve_fields
 
@@ -195,23 +182,22 @@ contains
       if (abs(x) > nothing*abs(y)) phi = atan(y/x)
    end function line_direction
 
-   function lengths(scales, x) result(fields)
-      type(hand_scales_t), intent(in) :: scales
+   function lengths(m, x) result(fields)
+      type(listed_t), intent(in) :: m
       real(qp), intent(in) :: x(:)
       character(field_length) :: fields(size(x))
       integer :: i
 
       do i = 1, size(x)
-         fields(i) = number_by_hand(x(i), 0.0_qp, scales%decimals(1, 0), scales%power(1, 0))
+         fields(i) = number_by_hand(x(i), 0.0_qp, m%scales%decimals(1, 0), m%scales%power(1, 0))
       end do
    end function lengths
 
-   function angle(m, scales, x) result(field)
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+   function angle(m, x) result(field)
+      type(listed_t), intent(in) :: m
       real(qp), intent(in) :: x
       character(field_length) :: field
 
-      field = number_by_hand(merge(x/degree_q, x, m%degrees), 0.0_qp, scales%decimals(2, 0), scales%power(2, 0))
+      field = number_by_hand(merge(x/degree_q, x, m%degrees), 0.0_qp, m%scales%decimals(2, 0), m%scales%power(2, 0))
    end function angle
 end module hand_centres

@@ -1,12 +1,12 @@
 !> Tests. The table of COLUMN cards as the listing must print it, from closed forms in real128: a line for each instant.
 !> In the decks of input/ no line is too long, no instant has a flag, and of ratios alone a derivative is asked for.
 module hand_columns
-   use mechanism, only: mechanism_t, instant_count, instant, drive_angle, drive_relangle
+   use mechanism, only: instant_count, instant, drive_angle, drive_relangle
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: hand_scales_t
-   use hand_numbers, only: number_by_hand, field_length
+   use hand_scales, only: listed_t
+   use hand_numbers, only: number_by_hand, power_text, field_length
    use hand_links, only: move_links_to
    use hand_rows, only: hand_row_t, column_word, drive_word, listed_name
    use hand_ratios, only: row_at, unit_of
@@ -20,31 +20,29 @@ module hand_columns
 
 contains
 
-   !> The table of the deck `name`: times, drives, and the numbers that the cards name.
-   subroutine put_columns_by_hand(o, name, m, scales)
+   !> The table: times, drives, and the numbers that the cards name.
+   subroutine put_columns_by_hand(o, m)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
-      type(body_t) :: links(size(m%links), instant_count(m))
+      type(listed_t), intent(in) :: m
+      type(body_t) :: links(size(m%links), instant_count(m%mechanism_t))
       type(hand_row_t) :: row
       type(jet_t) :: f
-      real(qp) :: t(instant_count(m)), x(instant_count(m))
-      character(line_length) :: line(1 - heads:instant_count(m))
+      real(qp) :: t(instant_count(m%mechanism_t)), x(instant_count(m%mechanism_t))
+      character(line_length) :: line(1 - heads:instant_count(m%mechanism_t))
       character(:), allocatable :: fault, word
       integer :: i, step, used
 
       if (.not. allocated(m%columns)) return
-      t = [(real(instant(m, step - 1), qp), step=1, size(t))]
+      t = [(real(instant(m%mechanism_t, step - 1), qp), step=1, size(t))]
       do step = 1, size(t)
          links(:, step)%phi%v = real(m%links%position(3), qp)
          if (step > 1) links(:, step) = links(:, step - 1)
-         call move_links_to(name, m, t(step), links(:, step), fault)
+         call move_links_to(m%name, m, t(step), links(:, step), fault)
       end do
 
       line = ''
       used = 0
-      call put_column('', 'T', trim(m%time_unit), t, scales%time_decimals, scales%time_power)
+      call put_column('', 'T', trim(m%time_unit), t, m%scales%time_decimals, m%scales%time_power)
       ! Room for the flag of an instant.
       used = used + 1
       do i = 1, size(m%drives)
@@ -56,19 +54,19 @@ contains
          associate (what => merge(2, 1, any(m%drives(i)%kind == [drive_angle, drive_relangle])))
             if (what == 2 .and. m%degrees) x = x/degree_q
             call put_column(word(:index(word, ' ') - 1), word(index(word, ' ') + 1:), unit_of(m, what, 0), x, &
-               scales%decimals(what, 0), scales%power(what, 0))
+               m%scales%decimals(what, 0), m%scales%power(what, 0))
          end associate
       end do
       do i = 1, size(m%columns)
          associate (at => m%columns(i)%at, request => m%requests(m%columns(i)%request))
             do step = 1, size(t)
-               row = row_at(name, m, t(step), links(:, step), request)
+               row = row_at(m, t(step), links(:, step), request)
                x(step) = row%value(at(1), at(2))
             end do
             associate (what => row%dimension(at(1)))
                if (what == 2 .and. m%degrees) x = x/degree_q
                call put_column(listed_name(row, m%polish), column_word(row, at(1), at(2), m%polish), &
-                  unit_of(m, what, at(2)), x, scales%decimals(what, at(2)), scales%power(what, at(2)))
+                  unit_of(m, what, at(2)), x, m%scales%decimals(what, at(2)), m%scales%power(what, at(2)))
             end associate
          end associate
       end do
@@ -88,8 +86,7 @@ contains
          character(line_length) :: cells(lbound(line, 1):ubound(line, 1))
          integer :: k, width
 
-         cells(:0) = [character(line_length) :: above, below, '', unit]
-         if (power /= 0) write (cells(-1), '("1.E", sp, i0.2)') power
+         cells(:0) = [character(line_length) :: above, below, power_text(power), unit]
          width = max(field_length, 2 + maxval(len_trim(cells(:0))))
          cells(1:) = [(number_by_hand(x(k), 0.0_qp, decimals, power), k=1, size(x))]
          do k = lbound(line, 1), ubound(line, 1)

@@ -1,6 +1,6 @@
-!> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as docs/method.md defines it: by how much
-!> its closed form in real128 changes, to first order, where all numbers of its cards are off by roundings times normal
-!> deviates, in eight ways, by a hash that is written down here again.
+!> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as docs/method.md defines it: by how
+!> much its closed form in real128 changes, to first order, where all numbers of its cards are off by roundings times
+!> normal deviates, in eight ways, by a hash that is written down here again.
 module hand_estimates
    use, intrinsic :: iso_fortran_env, only: int64, real64
    use mechanism, only: mechanism_t, pair_prismatic
@@ -23,8 +23,8 @@ module hand_estimates
    !> the guide, the piston's value, rate and acceleration at t = 0, and the instant.
    integer, parameter :: number_count = 9
 
-   !> The hash: its multiplier and its modulus, and the kinds of numbers in their addresses. A guide's direction counts by
-   !> the orientation of its link, 0 for the ground's, and by what it is beyond quarter turns.
+   !> The hash: its multiplier and its modulus, and the kinds of numbers in their addresses. A guide's direction counts
+   !> by the orientation of its link, 0 for the ground's, and by what it is beyond quarter turns.
    integer(int64), parameter :: multiplier = 16807, modulus = 2147483647
    integer, parameter :: of_point = 2, of_pair = 4, of_drive = 5, of_time = 7, ground = 0
    real(qp), parameter :: quarter = 2.0_qp**20

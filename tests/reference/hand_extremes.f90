@@ -2,10 +2,10 @@
 !> of times, then by golden section around the grid's largest and least values. Only dead centres use a derivative, the
 !> velocity.
 module hand_extremes
-   use mechanism, only: mechanism_t, request_link, request_point, request_ratio
+   use mechanism, only: request_link, request_point, request_ratio
    use quad_jet, only: qp, degree_q, wrap_angle
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: hand_scales_t, length_by_hand, rate_by_hand
+   use hand_scales, only: listed_t, length_by_hand, rate_by_hand
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: hand_row_t, column_word, drive_word
    use hand_ratios, only: row_at
@@ -26,7 +26,6 @@ module hand_extremes
 
    !> The rows asked for at the times of a grid.
    type :: grid_t
-      character(:), allocatable :: name                !< of the deck
       integer, allocatable :: asked(:)                 !< requests
       real(qp), allocatable :: t(:)                    !< (0:cells)
       real(qp), allocatable :: phi(:, :)               !< (links, 0:cells) angles
@@ -42,47 +41,45 @@ module hand_extremes
 
 contains
 
-   !> The table for the deck `name`; `flagged` (0:steps): instants of TIME without all of their motion, which goes on
+   !> The table; `flagged` (0:steps): instants of TIME without all of their motion, which goes on
    !> smoothly through them.
-   subroutine put_extremes_by_hand(o, name, m, scales, flagged)
+   subroutine put_extremes_by_hand(o, m, flagged)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       logical, intent(in) :: flagged(0:)
       type(grid_t) :: g
       integer :: q, kind
 
-      g = grid_of(name, m)
+      g = grid_of(m)
       call put(o, '')
-      call put_times(o, m, scales, g)
+      call put_times(o, m, g)
       kind = 0
       do q = 1, size(g%asked)
          if (.not. any_varies(g, q)) cycle
          associate (request => m%requests(g%asked(q)))
             if (request%drive > 0) then
                if (kind /= request_ratio + g%row(q, 0)%dimension(1)) &
-                  call put_ratio_heads(o, m, scales, g%row(q, 0), merge(2, 1, m%polish))
+                  call put_ratio_heads(o, m, g%row(q, 0))
                kind = request_ratio + g%row(q, 0)%dimension(1)
             else
-               if (request%kind /= kind) call put_heads(o, m, scales, request%kind, merge(2, 1, m%polish))
+               if (request%kind /= kind) call put_heads(o, m, request%kind)
                kind = request%kind
             end if
-            call put_subject(o, m, scales, g, q)
+            call put_subject(o, m, g, q)
          end associate
       end do
       if (g%reverses .and. .not. any(flagged) .and. any(g%closure > closes_to)) call put_closure(o, m, g)
       if (.not. any(flagged)) return
-      call put_gaps(o, m, scales, g, flagged, beside_change, merge(' --- EKSTREMA MOGA BYC POMINIETE W T =', &
-                                                                   ' --- EXTREMES MAY BE MISSED WITHIN T =', m%polish))
-      call put_gaps(o, m, scales, g, flagged, 0.0_qp, merge(' --- NIE PRZESZUKANO (BRAK RUCHU): T =       ', &
-                                                       ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T =', m%polish))
+      call put_gaps(o, m, g, flagged, beside_change, merge(' --- EKSTREMA MOGA BYC POMINIETE W T =', &
+         ' --- EXTREMES MAY BE MISSED WITHIN T =', m%polish))
+      call put_gaps(o, m, g, flagged, 0.0_qp, merge(' --- NIE PRZESZUKANO (BRAK RUCHU): T =       ', &
+         ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T =', m%polish))
    end subroutine put_extremes_by_hand
 
    !> Why there are no time ratios.
    subroutine put_closure(o, m, g)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       character(120) :: line
       character(70) :: head
@@ -116,12 +113,11 @@ contains
       text = trim(adjustl(field))
    end function three_digits
 
-   !> A line with the times of the `flagged` instants behind its `head`, or with the interval of twice the `part` of a step
-   !> about each, inside the run.
-   subroutine put_gaps(o, m, scales, g, flagged, part, head)
+   !> A line with the times of the `flagged` instants behind its `head`, or with the interval of twice the `part` of a
+   !> step about each, inside the run.
+   subroutine put_gaps(o, m, g, flagged, part, head)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       logical, intent(in) :: flagged(0:)
       real(qp), intent(in) :: part
@@ -135,27 +131,26 @@ contains
       do i = 0, m%steps
          if (.not. flagged(i)) cycle
          if (line(len(line):) /= '=') line = line//','
-         line = line//' '//instant_text(scales, g%t(i*refined) - merge(beside, 0.0_qp, i > 0))
-         if (part > 0.0_qp) line = line//' .. '//instant_text(scales, g%t(i*refined) + merge(beside, 0.0_qp, i < m%steps))
+         line = line//' '//instant_text(m, g%t(i*refined) - merge(beside, 0.0_qp, i > 0))
+         if (part > 0.0_qp) line = line//' .. '//instant_text(m, g%t(i*refined) + merge(beside, 0.0_qp, i < m%steps))
       end do
       call put(o, line//' '//trim(m%time_unit))
    end subroutine put_gaps
 
    !> The line over the table: the run, and the drives at both of its ends.
-   subroutine put_times(o, m, scales, g)
+   subroutine put_times(o, m, g)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       character(:), allocatable :: line, word, from
       integer :: i
 
-      line = trim(merge(' EKSTREMA', ' EXTREMES', m%polish))//'   T = '//instant_text(scales, g%t(0))//' .. ' &
-         //with_unit(g%t(ubound(g%t, 1)), scales%time_decimals, scales%time_power, m%time_unit)
+      line = trim(merge(' EKSTREMA', ' EXTREMES', m%polish))//'   T = '//instant_text(m, g%t(0))//' .. ' &
+         //with_unit(g%t(ubound(g%t, 1)), m%scales%time_decimals, m%scales%time_power, m%time_unit)
       do i = 1, size(m%drives)
-         from = drive_value(m, m%drives(i), scales, g%t(0))
+         from = drive_value(m, m%drives(i), g%t(0))
          word = '   '//drive_word(m, m%drives(i))//' = '//from(:index(from, ' ') - 1)//' .. ' &
-            //drive_value(m, m%drives(i), scales, g%t(ubound(g%t, 1)))
+            //drive_value(m, m%drives(i), g%t(ubound(g%t, 1)))
          if (len(line//word) > 120) then
             call put(o, line)
             line = repeat(' ', 9)
@@ -166,9 +161,8 @@ contains
    end subroutine put_times
 
    !> The rows of all requests for extremes of moving links.
-   function grid_of(name, m) result(g)
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
+   function grid_of(m) result(g)
+      type(listed_t), intent(in) :: m
       type(grid_t) :: g
       type(body_t) :: links(size(m%links)), first(size(m%links))
       character(:), allocatable :: fault
@@ -176,16 +170,15 @@ contains
       integer :: i, k, q, n
 
       n = refined*m%steps
-      g%name = name
       g%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. [(moves(m, i), i=1, size(m%requests))])
       allocate (g%t(0:n), g%phi(size(m%links), 0:n), g%row(size(g%asked), 0:n))
       links%phi%v = real(m%links%position(3), qp)
       do k = 0, n
          g%t(k) = real(m%t0, qp) + (real(m%t1, qp) - real(m%t0, qp))*k/n
-         call move_links_to(name, m, g%t(k), links, fault)
+         call move_links_to(m%name, m, g%t(k), links, fault)
          g%phi(:, k) = links%phi%v
          do q = 1, size(g%asked)
-            g%row(q, k) = row_at(name, m, g%t(k), links, m%requests(g%asked(q)))
+            g%row(q, k) = row_at(m, g%t(k), links, m%requests(g%asked(q)))
          end do
          if (k == 0) first = links
       end do
@@ -217,7 +210,7 @@ contains
 
    !> The subject of request `i` does not belong to the ground.
    logical function moves(m, i)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       integer, intent(in) :: i
 
       moves = .true.
@@ -227,7 +220,7 @@ contains
 
    !> Number (c, k) of row `q` at the time `t` beside grid point `i`.
    real(qp) function value_at(m, g, q, c, k, t, i) result(value)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, k, i
       real(qp), intent(in) :: t
@@ -236,14 +229,14 @@ contains
       character(:), allocatable :: fault
 
       links%phi%v = g%phi(:, i)
-      call move_links_to(g%name, m, t, links, fault)
-      row = row_at(g%name, m, t, links, m%requests(g%asked(q)))
+      call move_links_to(m%name, m, t, links, fault)
+      row = row_at(m, t, links, m%requests(g%asked(q)))
       value = row%value(c, k)
    end function value_at
 
    !> The greatest of number (c, k) of row `q` (`way` 1), or the least (-1).
    function extreme(m, g, q, c, k, way) result(best)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, k, way
       type(extreme_t) :: best, one
@@ -267,7 +260,7 @@ contains
 
    !> The same beside grid point `i`, where it is no less than its neighbours; otherwise the point itself.
    function refined_extreme(m, g, q, c, k, way, i, f) result(e)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, k, way, i
       real(qp), intent(in) :: f(0:)
@@ -304,10 +297,9 @@ contains
    end function refined_extreme
 
    !> The lines of row `q`.
-   subroutine put_subject(o, m, scales, g, q)
+   subroutine put_subject(o, m, g, q)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(inout) :: g
       integer, intent(in) :: q
       type(extreme_t) :: e(-1:1, 3, 0:2)
@@ -320,7 +312,7 @@ contains
 
       associate (row => g%row(q, 0), drive_of => m%drives(1))
          drive = drive_word(m, drive_of)
-         unit = drive_value(m, drive_of, scales, g%t(0))
+         unit = drive_value(m, drive_of, g%t(0))
          call put(o, ' '//row%name(:8)//merge('   NAPED ', '   DRIVE ', m%polish)//drive//','//unit(index(unit, ' '):))
          do way = -1, 1, 2
             fields = ''
@@ -328,9 +320,9 @@ contains
                do c = 1, row%columns
                   if (.not. varies(g, q, c, k)) cycle
                   e(way, c, k) = extreme(m, g, q, c, k, way)
-                  fields(c, k, 1) = number_of(m, scales, row, c, k, e(way, c, k)%value)
-                  fields(c, k, 2) = number_by_hand(e(way, c, k)%t, 0.0_qp, scales%time_decimals, scales%time_power)
-                  fields(c, k, 3) = in_field(drive_value(m, drive_of, scales, e(way, c, k)%t))
+                  fields(c, k, 1) = number_of(m, row, c, k, e(way, c, k)%value)
+                  fields(c, k, 2) = number_by_hand(e(way, c, k)%t, 0.0_qp, m%scales%time_decimals, m%scales%time_power)
+                  fields(c, k, 3) = in_field(drive_value(m, drive_of, e(way, c, k)%t))
                end do
             end do
             call put_line(o, row, words(way), fields(:, :, 1))
@@ -341,7 +333,7 @@ contains
          if (row%kind == request_ratio) return
          strokes = ''
          do c = 1, row%columns
-            if (varies(g, q, c, 0)) strokes(c, 0) = number_of(m, scales, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
+            if (varies(g, q, c, 0)) strokes(c, 0) = number_of(m, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
          end do
          call put_line(o, row, trim(merge('SKOK  ', 'STROKE', m%polish)), strokes)
          do c = 1, row%columns
@@ -349,14 +341,14 @@ contains
             call find_dead_centres(m, g, q, c, dead, period)
             g%reverses = g%reverses .or. size(dead) >= 2
             if (any(g%closure > closes_to)) cycle
-            if (size(dead) == 2) call put_stroke_times(o, m, scales, g, q, c, e(1, c, 0)%t - e(-1, c, 0)%t, period)
+            if (size(dead) == 2) call put_stroke_times(o, m, g, q, c, e(1, c, 0)%t - e(-1, c, 0)%t, period)
             if (size(dead) <= 2) cycle
             do i = 1, size(dead)
-               unit = drive_value(m, drive_of, scales, dead(i)%t)
+               unit = drive_value(m, drive_of, dead(i)%t)
                call put(o, ' '//trim(merge('PUNKT ZWROTNY', 'DEAD CENTRE  ', m%polish))//'  ' &
                   //column_word(row, c, 0, m%polish)//'  ' &
-                  //trim(adjustl(number_of(m, scales, row, c, 0, dead(i)%value)))//'   T = ' &
-                  //instant_text(scales, dead(i)%t)//'   '//drive//' = '//unit(:index(unit, ' ') - 1))
+                  //trim(adjustl(number_of(m, row, c, 0, dead(i)%value)))//'   T = ' &
+                  //instant_text(m, dead(i)%t)//'   '//drive//' = '//unit(:index(unit, ' ') - 1))
             end do
          end do
          do c = 1, row%columns
@@ -364,51 +356,49 @@ contains
             if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. varies(g, q, c, 0)) cycle
             if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
             do way = -1, 1, 2
-               call put_dwells(o, m, scales, g, q, c, way, e(way, c, 0), drive)
+               call put_dwells(o, m, g, q, c, way, e(way, c, 0), drive)
             end do
          end do
       end associate
    end subroutine put_subject
 
-   !> The line of the times of both strokes of column `c` of row `q`, from the time of its least value to `later` after it, in
-   !> a `period`.
-   subroutine put_stroke_times(o, m, scales, g, q, c, later, period)
+   !> The line of the times of both strokes of column `c` of row `q`, from the time of its least value to `later` after
+   !> it, in a `period`.
+   subroutine put_stroke_times(o, m, g, q, c, later, period)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c
       real(qp), intent(in) :: later, period
       real(qp) :: times(2)
       character(15), parameter :: words(3, 2) = reshape([character(15) :: 'TIME MIN TO MAX', 'TIME MAX TO MIN', &
          'TIME RATIO', 'CZAS MIN DO MAX', 'CZAS MAX DO MIN', 'STOSUNEK CZASOW'], [3, 2])
-      integer :: k, language
+      integer :: k
       character(:), allocatable :: line
 
-      language = merge(2, 1, m%polish)
       times(1) = abs(period)*modulo(later/period, 1.0_qp)
       times(2) = abs(period) - times(1)
       line = '  '//column_word(g%row(q, 0), c, 0, m%polish)
       do k = 1, 2
-         line = line//'   '//trim(words(k, language))//' ' &
-            //with_unit(times(k), scales%time_decimals, scales%time_power, m%time_unit)
+         line = line//'   '//trim(words(k, m%language))//' ' &
+            //with_unit(times(k), m%scales%time_decimals, m%scales%time_power, m%time_unit)
       end do
-      call put(o, line//'   '//trim(words(3, language))//' ' &
+      call put(o, line//'   '//trim(words(3, m%language))//' ' &
          //trim(adjustl(number_by_hand(maxval(times)/minval(times), 0.0_qp, 6, 0))))
    end subroutine put_stroke_times
 
    !> Number (c, k) of `row`, in the unit of its column.
-   function number_of(m, scales, row, c, k, value) result(text)
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+   function number_of(m, row, c, k, value) result(text)
+      type(listed_t), intent(in) :: m
       type(hand_row_t), intent(in) :: row
       integer, intent(in) :: c, k
       real(qp), intent(in) :: value
       character(field_length) :: text
 
       associate (what => row%dimension(c))
-         text = number_by_hand(value/merge(degree_q, 1.0_qp, what == 2 .and. m%degrees), 0.0_qp, scales%decimals(what, k), &
-            scales%power(what, k))
+         text = number_by_hand(value/merge(degree_q, 1.0_qp, what == 2 .and. m%degrees), 0.0_qp, &
+            m%scales%decimals(what, k), &
+            m%scales%power(what, k))
       end associate
    end function number_of
 
@@ -441,10 +431,10 @@ contains
       call put(o, trim(line))
    end subroutine put_line
 
-   !> The `dead` centres of column `c` of row `q`, where its velocity changes its sign, by bisection: those of the shortest
-   !> part of the run, the `period`, after which all of them repeat.
+   !> The `dead` centres of column `c` of row `q`, where its velocity changes its sign, by bisection: those of the
+   !> shortest part of the run, the `period`, after which all of them repeat.
    subroutine find_dead_centres(m, g, q, c, dead, period)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c
       type(extreme_t), allocatable, intent(out) :: dead(:)
@@ -504,10 +494,9 @@ contains
    end subroutine find_dead_centres
 
    !> The lines of the dwells within a distance of the extreme `e`: each time that the column comes inside.
-   subroutine put_dwells(o, m, scales, g, q, c, way, e, drive)
+   subroutine put_dwells(o, m, g, q, c, way, e, drive)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, way
       type(extreme_t), intent(in) :: e
@@ -536,7 +525,8 @@ contains
          else if (inside(size(ordered)) .and. goes_round(g, q, c)) then
             cycle
          end if
-         call put_dwell(leaves(m, g, q, c, way, ordered(i)%t, level, -1), leaves(m, g, q, c, way, ordered(i)%t, level, 1))
+         call put_dwell(leaves(m, g, q, c, way, ordered(i)%t, level, -1), &
+            leaves(m, g, q, c, way, ordered(i)%t, level, 1))
       end do
 
    contains
@@ -547,12 +537,12 @@ contains
          character(:), allocatable :: first
          character(field_length) :: text
 
-         text = number_of(m, scales, g%row(q, 0), c, 0, distance)
-         first = drive_value(m, m%drives(1), scales, from)
+         text = number_of(m, g%row(q, 0), c, 0, distance)
+         first = drive_value(m, m%drives(1), from)
          call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//column_word(g%row(q, 0), c, 0, m%polish) &
-            //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = '//instant_text(scales, from)//' .. ' &
-            //instant_text(scales, to)//'   '//drive//' = '//first(:index(first, ' ') - 1)//' .. ' &
-            //trim(adjustl(in_field(drive_value(m, m%drives(1), scales, to)))))
+            //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = ' &
+            //instant_text(m, from)//' .. '//instant_text(m, to)//'   '//drive//' = ' &
+            //first(:index(first, ' ') - 1)//' .. '//trim(adjustl(in_field(drive_value(m, m%drives(1), to)))))
       end subroutine put_dwell
    end subroutine put_dwells
 
@@ -568,7 +558,7 @@ contains
    !> When column `c` of row `q` passes the `level`, from the time `start` along the run (`side` 1) or against it: by
    !> bisection. In a cycle the run has no end.
    real(qp) function leaves(m, g, q, c, way, start, level, side) result(t)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, way, side
       real(qp), intent(in) :: start, level
@@ -576,7 +566,8 @@ contains
       integer :: i, n
 
       n = ubound(g%t, 1)
-      i = merge(count((g%t - start)*(g%t(n) - g%t(0)) <= 0.0_qp), count((g%t - start)*(g%t(n) - g%t(0)) < 0.0_qp) - 1, side > 0)
+      i = merge(count((g%t - start)*(g%t(n) - g%t(0)) <= 0.0_qp), &
+         count((g%t - start)*(g%t(n) - g%t(0)) < 0.0_qp) - 1, side > 0)
       inside = start
       do
          if (i < 0 .or. i > n) then

@@ -1,6 +1,6 @@
-!> Tests. The structure of the decks in input/, counted and stated by hand from the drawings: numbers of links and pairs, Assur
-!> groups, redundant equations, change points. Groups: crank first, then dyad upon dyad; a star stands before a group that holds
-!> a drive.
+!> Tests. The structure of the decks in input/, counted and stated by hand from the drawings: numbers of links and
+!> pairs, Assur groups, redundant equations, change points. Groups: crank first, then dyad upon dyad; a star stands
+!> before a group that holds a drive.
 module hand_groups
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -22,11 +22,11 @@ module hand_groups
    end type statement_t
 
    type(statement_t), parameter :: statements(*) = [ &
-      statement_t('four_bar stroke crank_rockers tolerances poles rise_dwell drawing transmission book_four_bar chebyshev ' &
-         //'many_turns triple_rocker far_small', 0, 4, 4, 0, 1, '*CRANK; COUPLER ROCKER'), &
-      statement_t('kite kite_across kite_at kite_branch antiparallelogram antiparallelogram_across antiparallelogram_at ' &
-         //'antiparallelogram_branch parallelogram parallelogram_at parallelogram_branch', 0, 4, 4, 0, 1, &
-         '*CRANK; COUPLER ROCKER'), &
+      statement_t('four_bar stroke crank_rockers tolerances poles rise_dwell drawing transmission book_four_bar ' &
+         //'chebyshev many_turns triple_rocker far_small', 0, 4, 4, 0, 1, '*CRANK; COUPLER ROCKER'), &
+      statement_t('kite kite_across kite_at kite_branch antiparallelogram antiparallelogram_across ' &
+         //'antiparallelogram_at antiparallelogram_branch parallelogram parallelogram_at parallelogram_branch', &
+         0, 4, 4, 0, 1, '*CRANK; COUPLER ROCKER'), &
       statement_t('drag_link', 0, 4, 4, 0, 1, '*CRANK; COUPLER FOLLOWER'), &
       statement_t('teaching_four_bar', 0, 4, 4, 0, 1, '*ABH; BCFG CDEI'), &
       statement_t('crank_slider crank_inline near_equal_rod guide_tolerances', 0, 4, 3, 1, 1, '*CRANK; ROD PISTON'), &
@@ -80,11 +80,13 @@ module hand_groups
       statement_t('parallel_cranks', 0, 5, 6, 0, 1, '*CRANK-1 CRANK-2 CRANK-3 COUPLER', 'PAIR-C'), &
       statement_t('double_parallelogram', 0, 5, 6, 0, 1, '*CRANK-A CRANK-B LOWER UPPER', 'PAIR-B2'), &
       statement_t('two_guides', 0, 4, 3, 2, 1, '*CRANK; ROD CARRIAGE', 'GUIDE-2 GUIDE-2'), &
-      statement_t('cognates', 0, 10, 14, 0, 1, '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', &
+      statement_t('cognates', 0, 10, 14, 0, 1, &
+      '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', &
          'PAIR-PL PAIR-PR'), &
       statement_t('dixon', 0, 9, 12, 0, 1, '*BAR-12 BAR-13 BAR-21 BAR-22 BAR-23 BAR-31 BAR-32 BAR-33', 'PAIR-A32')]
 
-   !> The change points of a deck: two times, and whether the motion takes the other branch there, as a BRANCH card asks for.
+   !> The change points of a deck: two times, and whether the motion takes the other branch there, as a BRANCH card asks
+   !> for.
    type :: change_points_t
       character(24) :: deck = ''
       real(wp) :: t(2) = 0.0_wp
@@ -110,7 +112,8 @@ module hand_groups
 
 contains
 
-   !> The number of the statement about set number `set` of the deck called `name`, of any set (0) the first; 0: nothing is stated.
+   !> The number of the statement about set number `set` of the deck called `name`, of any set (0) the first; 0: nothing
+   !> is stated.
    pure integer function statement_of(name, set) result(i)
       character(*), intent(in) :: name
       integer, intent(in) :: set

@@ -11,11 +11,11 @@ module hand_links
 
 contains
 
-   !> Puts `links` (in the order of the deck `name`) where the closed form has them at `t`, with angles next to what they
-   !> were before. `fault`: what does not fit, '' if all does.
+   !> Puts `links` (in the order of the deck `name`) where the closed form has them at `t`, with angles next to what
+   !> they were before. `fault`: what does not fit, '' if all does.
    subroutine move_links_to(name, m, t, links, fault)
       character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: t
       type(body_t), intent(inout) :: links(:)
       character(:), allocatable, intent(out) :: fault
@@ -26,7 +26,7 @@ contains
    !> The `links` at the time `t` in a motion in which drive number `drive` has the rate 1, and all others rest.
    function links_by_drive(name, m, t, links, drive) result(moved)
       character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: t
       type(body_t), intent(in) :: links(:)
       integer, intent(in) :: drive
@@ -44,7 +44,7 @@ contains
 
    !> Puts `links` where they are `found`, as `move_links_to`.
    subroutine put_links(m, found, links, fault)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: found(:)
       type(body_t), intent(inout) :: links(:)
       character(:), allocatable, intent(out) :: fault
@@ -57,7 +57,7 @@ contains
 
    !> The links of a closed form, `found`, in the order of the deck of `m`. `fault`: what does not fit, '' if all does.
    subroutine sort_links(m, found, links, fault)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: found(:)
       type(body_t), intent(inout) :: links(:)
       character(:), allocatable, intent(out) :: fault

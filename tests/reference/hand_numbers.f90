@@ -5,7 +5,7 @@ module hand_numbers
    use quad_jet, only: qp
    implicit none
    private
-   public :: number_by_hand, field_length
+   public :: number_by_hand, power_text, field_length
 
    integer, parameter :: field_length = 12
    !> Of a number below 1 a field has room for a blank, a zero or a sign, the point, and these.
@@ -31,6 +31,15 @@ contains
       if (last > -decimals) text = masked(scaled, last, decimals)
       if (text == '') text = plain(scaled, decimals)
    end function number_by_hand
+
+   !> The power of ten over a column; '' for 1.
+   function power_text(power) result(text)
+      integer, intent(in) :: power
+      character(field_length) :: text
+
+      text = ''
+      if (power /= 0) write (text, '("1.E", sp, i0.2)') power
+   end function power_text
 
    !> Room for digits and a sign: the field begins with a blank and has a point.
    integer function room(x)
@@ -99,8 +108,8 @@ contains
       text = adjustr(text)
    end function masked_exponent
 
-   !> The digits of `n` with a point before the last `d`; a zero has no sign. The sign takes the place of a zero before the
-   !> point if there is no other.
+   !> The digits of `n` with a point before the last `d`; a zero has no sign. The sign takes the place of a zero before
+   !> the point if there is no other.
    function with_point(n, d, negative) result(text)
       integer(int64), intent(in) :: n
       integer, intent(in) :: d

@@ -1,11 +1,11 @@
 !> Tests. Rows at any time; of ratios from a motion in which one drive moves alone; and units.
 module hand_ratios
-   use mechanism, only: mechanism_t, request_t, request_ratio, drive_angle, drive_relangle
+   use mechanism, only: request_t, request_ratio, drive_angle, drive_relangle
    use quad_jet, only: qp, degree_q
    use closed_forms_dyads, only: body_t
    use hand_links, only: links_by_drive
    use hand_rows, only: hand_row_t, row_by_hand, drive_word
-   use hand_scales, only: ratio_of
+   use hand_scales, only: listed_t, ratio_of
    implicit none
    private
    public :: row_at, unit_of
@@ -15,12 +15,11 @@ module hand_ratios
 
 contains
 
-   !> The row that `request` asks for of the deck `name` at the time `t`, when its links are at `b`. A ratio is the
-   !> velocity of its quantity, in the units of the deck, where its drive alone moves, at the rate 1; its derivative is the
-   !> acceleration.
-   function row_at(name, m, t, b, request) result(row)
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
+   !> The row that `request` asks for at the time `t`, when its links are at `b`. A ratio is the
+   !> velocity of its quantity, in the units of the deck, where its drive alone moves, at the rate 1; its derivative is
+   !> the acceleration.
+   function row_at(m, t, b, request) result(row)
+      type(listed_t), intent(in) :: m
       real(qp), intent(in) :: t
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
@@ -32,7 +31,7 @@ contains
          row = row_by_hand(m, b, request)
          return
       end if
-      row = row_by_hand(m, links_by_drive(name, m, t, b, request%drive), request)
+      row = row_by_hand(m, links_by_drive(m%name, m, t, b, request%drive), request)
       associate (d => m%drives(request%drive))
          row%by = drive_word(m, d)
          of_drive = merge(2, 1, any(d%kind == [drive_angle, drive_relangle]))
@@ -47,9 +46,9 @@ contains
       row%slot(1, :) = behind_names + [1, 2, 3]
    end function row_at
 
-   !> The unit of a length (1), an angle (2) or a ratio; or of the derivative (`k` 1) of a ratio.
+   !> The unit of derivative number `k` of a length (1), an angle (2) or a ratio.
    function unit_of(m, dimension, k) result(unit)
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       integer, intent(in) :: dimension, k
       character(:), allocatable :: unit
       character(8) :: units(2)
@@ -59,6 +58,7 @@ contains
       quantity = merge(dimension, (dimension - 1)/2, dimension <= 2)
       unit = trim(units(quantity))
       if (dimension > 2) unit = unit//'/'//trim(units(dimension - 2*quantity))
-      if (k == 1) unit = unit//'**2'
+      if (dimension <= 2 .and. k > 0) unit = unit//'/'//trim(m%time_unit)
+      if (k == merge(2, 1, dimension <= 2)) unit = unit//'**2'
    end function unit_of
 end module hand_ratios

@@ -4,21 +4,21 @@ module hand_rows
    use mechanism, only: mechanism_t, drive_t, request_t, request_link, request_point, request_pair, request_measure, &
       request_ratio, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, pair_prismatic, &
       measure_distance, measure_line, measure_angle, measure_xi, measure_sum
-   use quad_jet, only: qp, jet_t, constant_jet, wrap_angle, operator(+), operator(-), operator(*), sin, cos, sqrt
-   use closed_forms_dyads, only: body_t, place_t, place_on, direction, distance_squared
+   use quad_jet, only: qp, jet_t, constant_jet, wrap_angle, operator(+), operator(-), operator(*), sqrt
+   use closed_forms_dyads, only: body_t, place_t, body, place_on, seen_from, direction, distance_squared
    implicit none
    private
    public :: hand_row_t, row_by_hand, has_form, pair_slots, listed_name, column_word, drive_word
 
-   !> Where the value, velocity and acceleration of slides stand, or those of angles where there are no slides; and where
-   !> those of angles stand beside slides.
+   !> Where the value, velocity and acceleration of slides stand, or those of angles where there are no slides; and
+   !> where those of angles stand beside slides.
    integer, parameter :: pair_slots(0:2, 2) = reshape([1, 2, 4, 5, 6, 8], [3, 2])
 
    !> Closer points coincide: places of the decks are known better.
    real(qp), parameter :: same_place = 1.0e-20_qp
 
-   !> A row of the kind `kind` of a request; `column`: which of x, y, phi its values stand under, a slide under x and the
-   !> angle of a pair under phi; `links`: those that it depends on.
+   !> A row of the kind `kind` of a request; `column`: which of x, y, phi its values stand under, a slide under x and
+   !> the angle of a pair under phi; `links`: those that it depends on.
    type :: hand_row_t
       integer :: kind = request_link
       character(8) :: name = ''
@@ -36,7 +36,7 @@ contains
 
    !> The row that `request` asks for, of the links `b` in the order of the deck.
    function row_by_hand(m, b, request) result(row)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
       type(hand_row_t) :: row
@@ -89,7 +89,7 @@ contains
 
    !> The kind of the drive `d` and the names of what it drives.
    function drive_word(m, d) result(text)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: d
       character(:), allocatable :: text
 
@@ -131,7 +131,7 @@ contains
 
    !> Pairs or measures (`kind`) that are lengths (`of_length`) or angles are asked for.
    pure logical function has_form(m, kind, of_length)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: kind
       logical, intent(in) :: of_length
       integer :: i
@@ -161,17 +161,17 @@ contains
 
    !> Point number `i` of the plane.
    type(place_t) function point(m, b, i)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       integer, intent(in) :: i
 
       point = place_on(b(m%points(i)%link), real(m%points(i)%offset(1), qp), real(m%points(i)%offset(2), qp))
    end function point
 
-   !> Measure number `i`, whose links are added to those of the row. A direction is above -pi and up to pi: no deck turns
-   !> one beyond.
+   !> Measure number `i`, whose links are added to those of the row. A direction is above -pi and up to pi: no deck
+   !> turns one beyond.
    recursive type(jet_t) function measure_value(m, b, i, row) result(value)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       integer, intent(in) :: i
       type(hand_row_t), intent(inout) :: row
@@ -209,35 +209,29 @@ contains
                value = value + real(subjects(k)%factor, qp)*one(1)
             end do
          case default
-            p = point(m, b, subjects(1)%number)
+            p = seen_from(b(subjects(2)%number), point(m, b, subjects(1)%number))
             row%links = [row%links, m%points(subjects(1)%number)%link, subjects(2)%number]
-            associate (frame => b(subjects(2)%number))
-               if (measure%kind == measure_xi) then
-                  value = (p%x - frame%x)*cos(frame%phi) + (p%y - frame%y)*sin(frame%phi)
-               else
-                  value = (p%y - frame%y)*cos(frame%phi) - (p%x - frame%x)*sin(frame%phi)
-               end if
-            end associate
+            value = p%y
+            if (measure%kind == measure_xi) value = p%x
          end select
       end associate
    end function measure_value
 
    !> The angle of pair number `i`, or how far its second point is along its guide.
    type(jet_t) function pair_value(m, b, i) result(value)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       integer, intent(in) :: i
-      type(place_t) :: p, q
-      type(jet_t) :: guide
+      type(body_t) :: guide
+      type(place_t) :: q
 
       associate (pair => m%pairs(i))
          associate (first => b(m%points(pair%point_i)%link), second => b(m%points(pair%point_j)%link))
             value = second%phi - first%phi
             if (pair%kind /= pair_prismatic) return
-            p = point(m, b, pair%point_i)
-            q = point(m, b, pair%point_j)
-            guide = first%phi + real(pair%alpha, qp)
-            value = (q%x - p%x)*cos(guide) + (q%y - p%y)*sin(guide)
+            guide = body('', point(m, b, pair%point_i), first%phi + real(pair%alpha, qp))
+            q = seen_from(guide, point(m, b, pair%point_j))
+            value = q%x
          end associate
       end associate
    end function pair_value

@@ -1,5 +1,6 @@
 !> Tests. The decimals and powers of ten of the tables of a deck, computed in real128 from the numbers of its cards by
-!> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
+!> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is
+!> used.
 module hand_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
       term_harmonic, term_power, term_table, term_kinds
@@ -7,7 +8,7 @@ module hand_scales
    use quad_jet, only: qp, degree_q
    implicit none
    private
-   public :: hand_scales_t, scales_by_hand, length_by_hand, rate_by_hand, ratio_of
+   public :: listed_t, listed_set, length_by_hand, rate_by_hand, ratio_of
 
    !> (dimension, derivative), and those of the time. A dimension is a length (1), an angle (2), or that of a ratio.
    type :: hand_scales_t
@@ -15,14 +16,33 @@ module hand_scales
       integer :: time_decimals = 0, time_power = 0
    end type hand_scales_t
 
-   !> Numbers up to 9999999 and down to 0.001 need no power of ten. (Tolerances with more decimals need one from a larger
-   !> number on; no deck of input/ has such a number.)
+   !> A set of computations with what all of its tables need.
+   type, extends(mechanism_t) :: listed_t
+      character(:), allocatable :: name        !< of the deck
+      type(hand_scales_t) :: scales
+      integer :: language = 1                  !< English (1) or Polish (2)
+   end type listed_t
+
+   !> Numbers up to 9999999 and down to 0.001 need no power of ten. (Tolerances with more decimals need one from a
+   !> larger number on; no deck of input/ has such a number.)
    integer, parameter :: highest = 6, lowest = -3, digits = 7
 
 contains
 
-   type(hand_scales_t) function scales_by_hand(m) result(s)
+   !> The set `m` of the deck `name`.
+   function listed_set(name, m) result(listed)
+      character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
+      type(listed_t) :: listed
+
+      listed%mechanism_t = m
+      listed%name = name
+      listed%scales = scales_by_hand(m)
+      listed%language = merge(2, 1, m%polish)
+   end function listed_set
+
+   type(hand_scales_t) function scales_by_hand(m) result(s)
+      class(mechanism_t), intent(in) :: m
       real(qp) :: length, rate, turn, sizes(2)
       integer :: k, quantity, drive
 
@@ -74,7 +94,7 @@ contains
    end subroutine take
 
    real(qp) function last_time(m)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer :: i
 
       last_time = max(abs(real(m%t0, qp)), abs(real(m%t1, qp)))
@@ -86,7 +106,7 @@ contains
    !> The largest side of the boxes round the points of each link and its origin, in the link's axes; of all ground
    !> points, in the axes of the plane; the largest offset of a guide, and length that a drive has at t = 0.
    real(qp) function length_by_hand(m) result(length)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       real(qp) :: from(2)
       integer :: i, j
 
@@ -118,7 +138,7 @@ contains
 
    !> Point number `i` in the axes of its link, of a ground link in those of the plane.
    function place(m, i) result(p)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(qp) :: p(2), phi
 
@@ -132,7 +152,7 @@ contains
 
    !> The largest rate of a drive up to the last instant; of a length, in parts of `length`.
    real(qp) function rate_by_hand(m, length) result(rate)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: length
       integer :: i
 

@@ -1,14 +1,14 @@
-!> Tests. The tables of one instant as the listing must print them, from closed forms in real128: the line over them with
-!> the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's tables is
-!> used.
+!> Tests. The tables of one instant as the listing must print them, from closed forms in real128: the line over them
+!> with the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's
+!> tables is used.
 module hand_tables
-   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pair, request_measure, request_pole, &
+   use mechanism, only: drive_t, instant_count, instant, request_pair, request_measure, request_pole, &
       request_ratio, drive_angle, drive_relangle
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: hand_scales_t
-   use hand_numbers, only: number_by_hand, field_length
+   use hand_scales, only: listed_t
+   use hand_numbers, only: number_by_hand, power_text, field_length
    use hand_rows, only: hand_row_t, has_form, pair_slots, column_word, drive_word, listed_name
    use hand_ratios, only: row_at, unit_of
    use hand_tolerances, only: spread_lines
@@ -34,8 +34,8 @@ module hand_tables
    real(qp), parameter :: parallel = 1.0e-6_qp
    !> Smaller ratios with smaller derivatives are 0: in the decks of input/ both are 0 at no instant by chance.
    real(qp), parameter :: at_rest = 1.0e-25_qp
-   !> The heads over links, points, pairs, measures, and links of which only the angle is listed; their words end where the
-   !> numbers do.
+   !> The heads over links, points, pairs, measures, and links of which only the angle is listed; their words end where
+   !> the numbers do.
    character(line_length), parameter :: heads(5, 2) = reshape([character(line_length) :: &
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
@@ -58,8 +58,8 @@ module hand_tables
    integer, parameter :: before_angles = name_length + 4*field_length
    !> More drives do not stand over the tables, and no line is longer.
    integer, parameter :: most_drives = 6, widest = 120
-   !> Heads stand once for all rows of a kind below them, for ratios of a dimension, but again after remarks and after so
-   !> many lines.
+   !> Heads stand once for all rows of a kind below them, for ratios of a dimension, but again after remarks and after
+   !> so many lines.
    integer, parameter :: heads_every = 60
 
    !> The kind of rows to which the last heads belong, 0 where there are none, and the lines since.
@@ -69,15 +69,13 @@ module hand_tables
 
 contains
 
-   !> Instant number `step` of `m`, of the deck `name`, whose links are at `b`, in the order of the deck; `resting`
+   !> Instant number `step` of `m`, whose links are at `b`, in the order of the deck; `resting`
    !> (links): they have no velocity of their own, for at a change point those numbered `crossing` have two; `error` (3,
    !> 0:2, requests), of size 0 where all digits are known. `remarks`: some follow. `above`: what the instant before has
    !> left.
-   subroutine put_tables(o, name, m, scales, step, b, resting, crossing, error, remarks, above)
+   subroutine put_tables(o, m, step, b, resting, crossing, error, remarks, above)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       integer, intent(in) :: step
       type(body_t), intent(in) :: b(:)
       logical, intent(in) :: resting(:)
@@ -88,22 +86,21 @@ contains
       type(hand_row_t) :: row
       character(line_length) :: line
       character(120) :: spreads(2)
-      integer :: i, k, kind, language
+      integer :: i, k, kind
       logical :: masked, begun
 
-      language = merge(2, 1, m%polish)
       begun = .false.
       masked = .false.
       do i = 1, size(m%requests)
          if (.not. m%requests(i)%listed) then
             if (m%requests(i)%every == 0) cycle
-            if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
+            if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m%mechanism_t) - 1) cycle
          end if
-         if (.not. begun) call put_time(o, m, scales, step, language, above)
+         if (.not. begun) call put_time(o, m, step, above)
          begun = .true.
          kind = m%requests(i)%kind
          if (kind < request_pole) then
-            row = row_at(name, m, real(instant(m, step), qp), b, m%requests(i))
+            row = row_at(m, real(instant(m%mechanism_t, step), qp), b, m%requests(i))
             if (row%kind == request_ratio) kind = request_ratio + row%dimension(1)
             ! A drive that does not move the quantity has no row.
             if (row%kind == request_ratio .and. all(abs(row%value(1, :1)) < at_rest)) cycle
@@ -111,24 +108,24 @@ contains
          if (kind /= above%kind) then
             above = above_t(kind)
             if (kind >= request_ratio) then
-               call put_ratio_heads(o, m, scales, row, language)
+               call put_ratio_heads(o, m, row)
             else if (kind >= request_pole) then
-               call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
+               call put_centre_heads_by_hand(o, m, m%requests(i))
             else if (kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
-               call put_heads(o, m, scales, of_angles_alone, language)
+               call put_heads(o, m, of_angles_alone)
             else
-               call put_heads(o, m, scales, kind, language)
+               call put_heads(o, m, kind)
             end if
          end if
          above%lines = above%lines + 1
          if (m%requests(i)%kind >= request_pole) then
-            call put_centre_by_hand(o, m, scales, b, m%requests(i), resting, language)
+            call put_centre_by_hand(o, m, b, m%requests(i), resting)
             cycle
          end if
          if (size(error) > 0) then
-            line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), error(:, :, i), language)
+            line = row_line(m, row, merge(0, 2, any(resting(row%links))), error(:, :, i))
          else
-            line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), 0.0_qp*row%value, language)
+            line = row_line(m, row, merge(0, 2, any(resting(row%links))), 0.0_qp*row%value)
          end if
          if (m%requests(i)%angle_alone) then
             do k = 0, 2
@@ -138,51 +135,51 @@ contains
          masked = masked .or. index(line, '?') > 0
          call put(o, trim(line))
          if (allocated(m%tolerances)) then
-            spreads = spread_lines(m, scales, i, real(instant(m, step), qp))
+            spreads = spread_lines(m, i, real(instant(m%mechanism_t, step), qp))
             call put(o, trim(spreads(1)))
             call put(o, trim(spreads(2)))
             above%lines = above%lines + 2
          end if
       end do
-      if (.not. begun .and. any(resting)) call put_time(o, m, scales, step, language, above)
+      if (.not. begun .and. any(resting)) call put_time(o, m, step, above)
       if (masked .or. remarks .or. any(resting)) above%kind = 0
-      if (any(resting)) call put(o, ' *** '//crossing_words(m, b, crossing, language))
-      if (masked) call put(o, ' --- ?: '//trim(unknown_words(language)))
+      if (any(resting)) call put(o, ' *** '//crossing_words(m, b, crossing))
+      if (masked) call put(o, ' --- ?: '//trim(unknown_words(m%language)))
    end subroutine put_tables
 
    !> What there is to say of a change point: its links, and whether two of them are in line.
-   function crossing_words(m, b, crossing, language) result(text)
-      type(mechanism_t), intent(in) :: m
+   function crossing_words(m, b, crossing) result(text)
+      type(listed_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
-      integer, intent(in) :: crossing(:), language
+      integer, intent(in) :: crossing(:)
       character(:), allocatable :: text
       integer :: i
 
-      text = trim(singular_words(1, language))//', '//trim(link_words(min(2, size(crossing)), language))
+      text = trim(singular_words(1, m%language))//', '//trim(link_words(min(2, size(crossing)), m%language))
       do i = 1, size(crossing)
          if (i > 1) text = text//','
          text = text//' '//trim(m%links(crossing(i))%name)
       end do
       if (size(crossing) == 2) then
-         if (abs(sin(b(crossing(2))%phi%v - b(crossing(1))%phi%v)) < parallel) text = text//' '//trim(line_words(language))
+         if (abs(sin(b(crossing(2))%phi%v - b(crossing(1))%phi%v)) < parallel) &
+            text = text//' '//trim(line_words(m%language))
       end if
-      text = text//': '//trim(singular_words(2, language))
+      text = text//': '//trim(singular_words(2, m%language))
    end function crossing_words
 
    !> The heads over rows of one `kind`: names, powers of ten, units. What a unit is divided by has a line of its own
    !> where the longest unit has no room in its column, a blank before it.
-   subroutine put_heads(o, m, scales, kind, language)
+   subroutine put_heads(o, m, kind)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
-      integer, intent(in) :: kind, language
+      type(listed_t), intent(in) :: m
+      integer, intent(in) :: kind
       character(line_length) :: line(3), names
-      character(30) :: power, unit, per
-      integer :: c, k, at
+      character(:), allocatable :: unit
+      integer :: c, k, at, bar
       logical :: has_room, has_slots
 
       has_room = max(3, len_trim(m%length_unit)) + len('/'//trim(m%time_unit)//'**2') <= field_length - 1
-      names = heads(kind, language)
+      names = heads(kind, m%language)
       has_slots = any(kind == [request_pair, request_measure])
       if (has_slots) then
          if (.not. has_form(m, kind, .true.)) names = names(:name_length)//names(before_angles + 1:)
@@ -190,9 +187,6 @@ contains
       end if
       line = ''
       do k = 0, 2
-         per = ''
-         if (k > 0) per = '/'//m%time_unit
-         if (k == 2) per = trim(per)//'**2'
          do c = 1, 3
             if (columns(c, kind) == 0) cycle
             at = 3*k + c
@@ -200,16 +194,12 @@ contains
                if (.not. has_form(m, kind, c == 1)) cycle
                at = pair_slots(k, merge(2, 1, c == 3 .and. has_form(m, kind, .true.)))
             end if
-            unit = m%length_unit
-            if (columns(c, kind) == 2) unit = merge('DEG', 'RAD', m%degrees)
-            write (power, '("1.E", sp, i0.2)') scales%power(columns(c, kind), k)
-            if (scales%power(columns(c, kind), k) /= 0) call put_end(power, at, line(1))
-            if (has_room) then
-               call put_end(trim(unit)//per, at, line(2))
-            else
-               call put_end(unit, at, line(2))
-               call put_end(per, at, line(3))
-            end if
+            call put_end(power_text(m%scales%power(columns(c, kind), k)), at, line(1))
+            unit = unit_of(m, columns(c, kind), k)
+            bar = index(unit//'/', '/')
+            if (has_room) bar = len(unit) + 1
+            call put_end(unit(:bar - 1), at, line(2))
+            call put_end(unit(bar:), at, line(3))
          end do
       end do
       call put(o, trim(names))
@@ -219,23 +209,19 @@ contains
    end subroutine put_heads
 
    !> The heads over ratios of the dimension of `row`.
-   subroutine put_ratio_heads(o, m, scales, row, language)
+   subroutine put_ratio_heads(o, m, row)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       type(hand_row_t), intent(in) :: row
-      integer, intent(in) :: language
       character(line_length) :: line(3)
-      character(30) :: power
       integer :: k
 
       line = ''
-      line(1) = merge(' PRZELOZENIE', ' RATIO      ', language == 2)
+      line(1) = merge(' PRZELOZENIE', ' RATIO      ', m%polish)
       associate (d => row%dimension(1))
          do k = 0, 1
-            write (power, '("1.E", sp, i0.2)') scales%power(d, k)
-            call put_end(column_word(row, 1, k, language == 2), row%slot(1, k), line(1))
-            if (scales%power(d, k) /= 0) call put_end(power, row%slot(1, k), line(2))
+            call put_end(column_word(row, 1, k, m%polish), row%slot(1, k), line(1))
+            call put_end(power_text(m%scales%power(d, k)), row%slot(1, k), line(2))
             call put_end(unit_of(m, d, k), row%slot(1, k), line(3))
          end do
       end associate
@@ -256,11 +242,10 @@ contains
    end subroutine put_end
 
    !> The lines over the tables: the instant, and where its drives are.
-   subroutine put_time(o, m, scales, step, language, above)
+   subroutine put_time(o, m, step, above)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
-      integer, intent(in) :: step, language
+      type(listed_t), intent(in) :: m
+      integer, intent(in) :: step
       type(above_t), intent(inout) :: above
       character(:), allocatable :: line, word
       character(12) :: number, left_out
@@ -269,14 +254,16 @@ contains
       if (above%lines >= heads_every) above%kind = 0
       write (number, '(i0)') step
       call put(o, '')
-      line = trim(instant_words(language))//' '//trim(number)
+      line = trim(instant_words(m%language))//' '//trim(number)
       first = len(line)
-      line = line//'   T = '//with_unit(real(instant(m, step), qp), scales%time_decimals, scales%time_power, m%time_unit)
+      line = line//'   T = '//with_unit(real(instant(m%mechanism_t, step), qp), m%scales%time_decimals, &
+         m%scales%time_power, m%time_unit)
       do i = 1, min(most_drives, size(m%drives))
-         word = '   '//drive_word(m, m%drives(i))//' = '//drive_value(m, m%drives(i), scales, real(instant(m, step), qp))
+         word = '   '//drive_word(m, m%drives(i))//' = ' &
+            //drive_value(m, m%drives(i), real(instant(m%mechanism_t, step), qp))
          write (left_out, '(i0)') size(m%drives) - i
-         if (i == most_drives .and. size(m%drives) > i) word = word//' '//trim(merge('AND', 'I  ', language == 1))//' ' &
-            //trim(left_out)//' '//merge('MORE', 'INNE', language == 1)
+         if (i == most_drives .and. size(m%drives) > i) word = word//' '//trim(merge('AND', 'I  ', .not. m%polish)) &
+            //' '//trim(left_out)//' '//merge('MORE', 'INNE', .not. m%polish)
          if (len(line//word) > widest) then
             call put(o, line)
             line = repeat(' ', first)
@@ -289,12 +276,12 @@ contains
    end subroutine put_time
 
    !> A time without its unit.
-   function instant_text(scales, t) result(text)
-      type(hand_scales_t), intent(in) :: scales
+   function instant_text(m, t) result(text)
+      type(listed_t), intent(in) :: m
       real(qp), intent(in) :: t
       character(:), allocatable :: text
 
-      text = trim(adjustl(number_by_hand(t, 0.0_qp, scales%time_decimals, scales%time_power)))
+      text = trim(adjustl(number_by_hand(t, 0.0_qp, m%scales%time_decimals, m%scales%time_power)))
    end function instant_text
 
    !> A number over the power of ten that stands before its unit.
@@ -303,57 +290,51 @@ contains
       integer, intent(in) :: decimals, power
       character(*), intent(in) :: unit
       character(:), allocatable :: text
-      character(12) :: factor
 
       text = trim(adjustl(number_by_hand(x, 0.0_qp, decimals, power)))
-      write (factor, '("1.E", sp, i0.2)') power
-      if (power /= 0) text = text//' '//trim(factor)
+      if (power /= 0) text = text//' '//trim(power_text(power))
       text = text//' '//trim(unit)
    end function with_unit
 
    !> Where the drive `d` is at `t`, with as many digits as places and angles have in the tables.
-   function drive_value(m, d, scales, t) result(text)
-      type(mechanism_t), intent(in) :: m
+   function drive_value(m, d, t) result(text)
+      type(listed_t), intent(in) :: m
       type(drive_t), intent(in) :: d
-      type(hand_scales_t), intent(in) :: scales
       real(qp), intent(in) :: t
       character(:), allocatable :: text
       type(jet_t) :: f
 
       f = drive_jet(d, t)
-      if (all(d%kind /= [drive_angle, drive_relangle])) then
-         text = with_unit(f%v, scales%decimals(1, 0), scales%power(1, 0), m%length_unit)
-      else if (m%degrees) then
-         text = with_unit(f%v/degree_q, scales%decimals(2, 0), scales%power(2, 0), 'DEG')
-      else
-         text = with_unit(f%v, scales%decimals(2, 0), scales%power(2, 0), 'RAD')
-      end if
+      associate (what => merge(2, 1, any(d%kind == [drive_angle, drive_relangle])))
+         if (what == 2 .and. m%degrees) f%v = f%v/degree_q
+         text = with_unit(f%v, m%scales%decimals(what, 0), m%scales%power(what, 0), unit_of(m, what, 0))
+      end associate
    end function drive_value
 
    !> The line of `row`, of which derivatives up to `known` exist.
-   function row_line(row, degrees, scales, known, error, language) result(line)
+   function row_line(m, row, known, error) result(line)
+      type(listed_t), intent(in) :: m
       type(hand_row_t), intent(in) :: row
-      logical, intent(in) :: degrees
-      type(hand_scales_t), intent(in) :: scales
-      integer, intent(in) :: known, language
+      integer, intent(in) :: known
       real(qp), intent(in) :: error(3, 0:2)
       character(line_length) :: line
       real(qp) :: unit
       integer :: c, k, first, what
 
-      line = ' '//listed_name(row, language == 2)
+      line = ' '//listed_name(row, m%polish)
       do k = 0, row%orders
          do c = 1, row%columns
             first = name_length + field_length*(row%slot(c, k) - 1) + 1
             what = row%dimension(c)
             unit = 1.0_qp
-            if (degrees .and. what == 2) unit = degree_q
-            line(first:first + field_length - 1) = repeat(' ', field_length - len(none_words))//none_words(language)
+            if (m%degrees .and. what == 2) unit = degree_q
+            line(first:first + field_length - 1) = repeat(' ', field_length - len(none_words))//none_words(m%language)
             if (k <= known) line(first:first + field_length - 1) = number_by_hand(row%value(c, k)/unit, &
-               error(c, k)/unit, scales%decimals(what, k), scales%power(what, k))
+               error(c, k)/unit, m%scales%decimals(what, k), m%scales%power(what, k))
             ! A length has its value, and no rates.
             if (row%coincides .and. k <= known .and. (k > 0 .or. what == 2)) &
-               line(first:first + field_length - 1) = repeat(' ', field_length - len(coincide_words))//coincide_words(language)
+               line(first:first + field_length - 1) = repeat(' ', &
+               field_length - len(coincide_words))//coincide_words(m%language)
          end do
       end do
    end function row_line

@@ -1,12 +1,13 @@
-!> Tests. What tolerances do to the rows of the decks tolerances (1), guide_tolerances (2) and landing_gear (3), from their
-!> closed forms in real128 as functions of the numbers that have tolerances: sensitivities are central differences of
-!> these. Numbers, tolerances and units are those of the deck, written out again by hand.
+!> Tests. What tolerances do to the rows of the decks tolerances (1), guide_tolerances (2) and landing_gear (3), from
+!> their closed forms in real128 as functions of the numbers that have tolerances: sensitivities are central differences
+!> of these. Numbers, tolerances and units are those of the deck, written out again by hand.
 module hand_tolerances
    use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic, drive_slide
-   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos, atan2
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, &
+      cos, atan2
    use closed_forms_dyads, only: place_t, body_t, flat, origin, base, fixed_place, body, place_on, polar, direction, &
       third_corner, corner, drawn_link
-   use hand_scales, only: hand_scales_t
+   use hand_scales, only: listed_t
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: pair_slots
    use text_output, only: output_t, put
@@ -21,9 +22,11 @@ module hand_tolerances
 
    !> The numbers with tolerances of either deck, in the order of their cards.
    type(number_t), parameter :: numbers_1(11) = [ &
-      number_t('GROUND BASE X', '0.005', 'M', 0.0_qp, 0.005_qp), number_t('GROUND BASE PHI', '0.1', 'DEG', 0.0_qp, 0.1_qp), &
+      number_t('GROUND BASE X', '0.005', 'M', 0.0_qp, 0.005_qp), number_t('GROUND BASE PHI', '0.1', 'DEG', 0.0_qp, &
+      0.1_qp), &
       number_t('POINT B0 XI', '0.01', 'M', 4.0_qp, 0.01_qp), number_t('POINT B0 ETA', '0.01', 'M', 0.0_qp, 0.01_qp), &
-      number_t('POINT A-CR XI', '0.005', 'M', 1.0_qp, 0.005_qp), number_t('POINT B-CO XI', '0.01', 'M', 3.5_qp, 0.01_qp), &
+      number_t('POINT A-CR XI', '0.005', 'M', 1.0_qp, 0.005_qp), number_t('POINT B-CO XI', '0.01', 'M', 3.5_qp, &
+      0.01_qp), &
       number_t('POINT C XI', '0.02', 'M', 1.75_qp, 0.02_qp), number_t('POINT C ETA', '0.02', 'M', 1.25_qp, 0.02_qp), &
       number_t('POINT B-RO XI', '0.01', 'M', 3.0_qp, 0.01_qp), &
       number_t('ANGLE CRANK VALUE', '0.2', 'DEG', 0.0_qp, 0.2_qp), &
@@ -40,8 +43,8 @@ module hand_tolerances
       number_t('C IN BASE X', '0.5', 'MM', 0.0_qp, 0.5_qp), number_t('C IN BASE Y', '0.5', 'MM', 0.0_qp, 0.5_qp), &
       number_t('E IN LEG X', '0.5', 'MM', 0.0_qp, 0.5_qp), number_t('E IN LEG Y', '0.5', 'MM', 0.0_qp, 0.5_qp), &
       number_t('LENGTH A K', '0.2', 'MM', 740.0_qp, 0.2_qp), number_t('LENGTH D K', '0.2', 'MM', 700.0_qp, 0.2_qp)]
-   !> The largest tolerance of deck 1 is about 1/200 of the whole, that of deck 2 1/5000: for four digits of what it does,
-   !> one more decimal; that of deck 3 1/3000.
+   !> The largest tolerance of deck 1 is about 1/200 of the whole, that of deck 2 1/5000: for four digits of what it
+   !> does, one more decimal; that of deck 3 1/3000.
    integer, parameter :: more_decimals(3) = [0, 1, 1]
    !> The error of the differences is the square of this.
    real(qp), parameter :: h = 1.0e-12_qp
@@ -50,7 +53,8 @@ module hand_tolerances
    character(8), parameter :: worst_words(2) = ['WORST   ', 'NAJGOR. ']
    character(60), parameter :: share_words(2) = [character(60) :: &
       'TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', 'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS']
-   character(28), parameter :: small_words(2) = [character(28) :: 'CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:']
+   character(28), parameter :: small_words(2) = [character(28) :: 'CONTRIBUTIONS BELOW 0.01 %:', &
+      'UDZIALY PONIZEJ 0.01 %:']
    character(6), parameter :: kind_words(3, 2) = reshape([character(6) :: 'LINK', 'POINT', 'PAIR', &
       'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
    character(8), parameter :: column_words(3, 0:2, 2) = reshape([character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', &
@@ -63,7 +67,7 @@ contains
 
    !> The deck of `m`: 2 if it has a guide, 3 if the guide is driven.
    pure integer function case_of(m)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
 
       case_of = merge(2, 1, any(m%pairs%kind == pair_prismatic))
       if (any(m%drives%kind == drive_slide)) case_of = 3
@@ -106,7 +110,8 @@ contains
          phi = (p(10) + p(11)*time_jet(t))*degree_q
          a = polar(a0, p(5), phi)
          b = corner(a, p(6), b0, p(9), 1.0_qp)
-         links = [turned_base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+         links = [turned_base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
+                  body('ROCKER', b0, direction(b0, b))]
       else if (set == 3) then
          links = landing_gear(t, p)
       else
@@ -117,14 +122,16 @@ contains
          across = p(1)*sin(phi - p(3)) + p(4)
          s = along + sqrt(p(2)**2 - across*across)
          b = place_t(s*cos(p(3)) + p(4)*sin(p(3)), s*sin(p(3)) - p(4)*cos(p(3)))
-         links = [base, body('CRANK', origin, phi), body('ROD', a, direction(a, b)), body('PISTON', b, constant_jet(p(5)))]
+         links = [base, body('CRANK', origin, phi), body('ROD', a, direction(a, b)), &
+                  body('PISTON', b, constant_jet(p(5)))]
       end if
    end function links_with
 
-   !> A leg about (0, 0), which a cylinder from (-450, -250) to the leg's eye (0, -400) lifts to the right, 50 in a unit of
-   !> time from the length drawn. A brace of two bars folds between (1000, 0) and the leg's pin (0, -995), its knee below.
-   !> `p`: how far the hole of the ground for the cylinder is off, the hole of the leg for it, the lengths of the bars. The
-   !> axes of all links are those of the drawing; LENGTH moves the knee (580, -560) of either bar along the drawn bar.
+   !> A leg about (0, 0), which a cylinder from (-450, -250) to the leg's eye (0, -400) lifts to the right, 50 in a unit
+   !> of time from the length drawn. A brace of two bars folds between (1000, 0) and the leg's pin (0, -995), its knee
+   !> below. `p`: how far the hole of the ground for the cylinder is off, the hole of the leg for it, the lengths of the
+   !> bars. The axes of all links are those of the drawing; LENGTH moves the knee (580, -560) of either bar along the
+   !> drawn bar.
    pure function landing_gear(t, p) result(links)
       real(qp), intent(in) :: t, p(6)
       type(body_t) :: links(6), leg
@@ -148,7 +155,7 @@ contains
    !> rocker, the point C, the angle of pair B; of deck 2 the piston, and the slide along its guide; of deck 3 the wheel
    !> and the angle of the knee.
    function row_with(m, i, t, p) result(value)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(qp), intent(in) :: t, p(:)
       real(qp) :: value(3, 0:2)
@@ -180,7 +187,7 @@ contains
    !> (3, 0:2, numbers) By how much the row of request number `i` changes at the time `t` for each number with a
    !> tolerance, over the change of that.
    function sensitivities_by_hand(m, i, t) result(s)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(qp), intent(in) :: t
       real(qp), allocatable :: s(:, :, :)
@@ -200,9 +207,8 @@ contains
    end function sensitivities_by_hand
 
    !> The lines (2) below the row of request number `i` at the time `t`: worst case, root of the sum of squares.
-   function spread_lines(m, scales, i, t) result(lines)
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+   function spread_lines(m, i, t) result(lines)
+      type(listed_t), intent(in) :: m
       integer, intent(in) :: i
       real(qp), intent(in) :: t
       character(120) :: lines(2)
@@ -210,7 +216,7 @@ contains
       integer :: c, k, what, n, slot
 
       call find_spreads(m, sensitivities_by_hand(m, i, t), value)
-      lines(1) = '  '//worst_words(merge(2, 1, m%polish))
+      lines(1) = '  '//worst_words(m%language)
       lines(2) = '  RSS'
       do n = 1, 2
          do k = 0, 2
@@ -220,8 +226,8 @@ contains
                ! Each deck asks for pairs of one kind.
                if (columns_of(m, i) == 1) slot = pair_slots(k, 1)
                lines(n)(10 + field_length*(slot - 1):9 + field_length*slot) = &
-                  number_by_hand(value(c, k, n)/unit_of(m, what), 0.0_qp, scales%decimals(what, k) &
-                  + more_decimals(case_of(m)), scales%power(what, k))
+                  number_by_hand(value(c, k, n)/in_unit(m, what), 0.0_qp, m%scales%decimals(what, k) &
+                  + more_decimals(case_of(m)), m%scales%power(what, k))
             end do
          end do
       end do
@@ -229,7 +235,7 @@ contains
 
    !> Worst cases and roots of the sums of squares, `value` (3, 0:2, 2), from the sensitivities `s`.
    subroutine find_spreads(m, s, value)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: s(:, 0:, :)
       real(qp), intent(out) :: value(3, 0:2, 2)
       type(number_t), allocatable :: list(:)
@@ -246,7 +252,7 @@ contains
 
    !> The number of columns of request number `i`.
    integer function columns_of(m, i)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
 
       columns_of = merge(3, merge(2, 1, m%requests(i)%kind == request_point), m%requests(i)%kind == request_link)
@@ -254,7 +260,7 @@ contains
 
    !> The column, 1 to 3, under which its number `c` stands: an angle of a pair under the third.
    integer function column_of(m, i, c)
-      type(mechanism_t), intent(in) :: m
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: i, c
 
       column_of = c
@@ -262,69 +268,67 @@ contains
    end function column_of
 
    !> The unit of lengths (1) or angles (2) in those of the forms.
-   real(qp) function unit_of(m, what)
-      type(mechanism_t), intent(in) :: m
+   real(qp) function in_unit(m, what)
+      class(mechanism_t), intent(in) :: m
       integer, intent(in) :: what
 
-      unit_of = 1.0_qp
-      if (what == 2 .and. m%degrees) unit_of = degree_q
-   end function unit_of
+      in_unit = 1.0_qp
+      if (what == 2 .and. m%degrees) in_unit = degree_q
+   end function in_unit
 
    !> The shares behind the last instant of `m`.
-   subroutine put_shares_by_hand(o, m, scales)
+   subroutine put_shares_by_hand(o, m)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       integer :: i, c, k
 
       call put(o, '')
-      call put(o, ' '//trim(share_words(merge(2, 1, m%polish))))
+      call put(o, ' '//trim(share_words(m%language)))
       do i = 1, size(m%requests)
          do k = 0, 2
             do c = 1, columns_of(m, i)
-               call put_quantity(o, m, scales, i, c, k)
+               call put_quantity(o, m, i, c, k)
             end do
          end do
       end do
    end subroutine put_shares_by_hand
 
    !> Those of number `c`, derivative `k`, of request number `i`, unless its root is zero in the tables.
-   subroutine put_quantity(o, m, scales, i, c, k)
+   subroutine put_quantity(o, m, i, c, k)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(hand_scales_t), intent(in) :: scales
+      type(listed_t), intent(in) :: m
       integer, intent(in) :: i, c, k
       real(qp), allocatable :: s(:, :, :), best(:)
       real(qp) :: value(3, 0:2, 2), root, worst, t
-      integer :: n, what, decimals, language
+      integer :: n, what, decimals
       character(:), allocatable :: line
       character(20) :: unit
 
       root = -1.0_qp
-      do n = 0, instant_count(m) - 1
-         s = sensitivities_by_hand(m, i, real(instant(m, n), qp))
+      do n = 0, instant_count(m%mechanism_t) - 1
+         s = sensitivities_by_hand(m, i, real(instant(m%mechanism_t, n), qp))
          call find_spreads(m, s, value)
          if (value(c, k, 2) <= root*(1.0_qp + alike)) cycle
          root = value(c, k, 2)
          worst = value(c, k, 1)
-         t = instant(m, n)
+         t = instant(m%mechanism_t, n)
          ! The function's value has brought its own lower bounds.
          best = s(c, k + 1, :)
       end do
       what = merge(2, 1, column_of(m, i, c) == 3)
-      decimals = scales%decimals(what, k) + more_decimals(case_of(m))
-      if (root/unit_of(m, what)*10.0_qp**(decimals - scales%power(what, k)) < 0.5_qp) return
-      language = merge(2, 1, m%polish)
-      line = ' '//trim(kind_words(m%requests(i)%kind, language))//' '//trim(subject())//'  '
+      decimals = m%scales%decimals(what, k) + more_decimals(case_of(m))
+      if (root/in_unit(m, what)*10.0_qp**(decimals - m%scales%power(what, k)) < 0.5_qp) return
+      line = ' '//trim(kind_words(m%requests(i)%kind, m%language))//' '//trim(subject())//'  '
       if (columns_of(m, i) == 1) line = line//trim(pair_words(k, case_of(m)))
-      if (columns_of(m, i) > 1) line = line//trim(column_words(c, k, language))
+      if (columns_of(m, i) > 1) line = line//trim(column_words(c, k, m%language))
       unit = merge(m%length_unit, merge('DEG', 'RAD', m%degrees)//'     ', what == 1)
       if (k > 0) unit = trim(unit)//'/'//m%time_unit
       if (k == 2) unit = trim(unit)//'**2'
-      call put(o, line//'   T = '//number(t, scales%time_decimals, 0)//' '//trim(m%time_unit)//'   RSS = ' &
-         //number(root/unit_of(m, what), decimals, scales%power(what, k))//'   '//trim(worst_words(language))//' = ' &
-         //number(worst/unit_of(m, what), decimals, scales%power(what, k))//' '//trim(unit))
-      call put_numbers(o, m, best, root, unit_of(m, what), language)
+      call put(o, line//'   T = '//number(t, m%scales%time_decimals, 0)//' '//trim(m%time_unit)//'   RSS = ' &
+         //number(root/in_unit(m, what), decimals, m%scales%power(what, &
+         k))//'   '//trim(worst_words(m%language))//' = ' &
+         //number(worst/in_unit(m, what), decimals, m%scales%power(what, k))//' '//trim(unit))
+      call put_numbers(o, m, best, root, in_unit(m, what))
 
    contains
 
@@ -352,13 +356,12 @@ contains
       end function number
    end subroutine put_quantity
 
-   !> A line for each number with a share of note, from the sensitivities `s` of a quantity with this `root`, in units of
-   !> `unit`.
-   subroutine put_numbers(o, m, s, root, unit, language)
+   !> A line for each number with a share of note, from the sensitivities `s` of a quantity with this `root`, in units
+   !> of `unit`.
+   subroutine put_numbers(o, m, s, root, unit)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      type(listed_t), intent(in) :: m
       real(qp), intent(in) :: s(:), root, unit
-      integer, intent(in) :: language
       type(number_t), allocatable :: list(:)
       real(qp) :: share(size(s))
       character(12) :: text
@@ -377,6 +380,6 @@ contains
          share(d) = -1.0_qp
       end do
       write (text, '(i0)') size(s) - n + 1
-      if (n <= size(s)) call put(o, '   '//trim(small_words(language))//' '//trim(text))
+      if (n <= size(s)) call put(o, '   '//trim(small_words(m%language))//' '//trim(text))
    end subroutine put_numbers
 end module hand_tolerances

@@ -42,8 +42,9 @@ program kind_errors
       'scotch_yoke, 2', 'trammel, 2', 'two_loops, 1']
    real(qp), parameter :: rounded_data = 5.0e-16_qp
    !> Below this number of bits it depends on the last one whether the way on from a change point is known: instants of
-   !> decks with such names may be marked, which is no error; what is given is compared like all else. Of a crank that has
-   !> turned often no digit is left then; of an acceleration that is a difference of 1E-12 of two, none by the estimate.
+   !> decks with such names may be marked, which is no error; what is given is compared like all else. Of a crank that
+   !> has turned often no digit is left then; of an acceleration that is a difference of 1E-12 of two, none by the
+   !> estimate.
    integer, parameter :: bits_enough = 53
    real(qp), parameter :: roundings_there = merge(roundings*inverse_close, sqrt(roundings/epsilon(1.0_wp)), &
       digits(1.0_wp) >= bits_enough)

@@ -18,10 +18,9 @@ program print_expected
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
    use variant_tables, only: write_variant, write_variant_heads, write_variant_row, write_variants_end
    use text_output, only: output_t, open_output, close_output, put
-   use listing, only: new_layout, listing_head, listing_end
-   use listing, only: write_diagnostics
+   use listing, only: new_layout, listing_head, listing_end, write_diagnostics
    use quad_jet, only: qp
-   use hand_scales, only: hand_scales_t, scales_by_hand
+   use hand_scales, only: listed_t, listed_set
    use hand_rows, only: hand_row_t, row_by_hand
    use hand_estimates, only: estimates_by_hand
    use hand_tables, only: above_t, put_tables
@@ -110,8 +109,8 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
+      type(listed_t) :: listed
       type(set_t) :: set
-      type(hand_scales_t) :: scales
       type(above_t) :: above
       type(certificate_counts_t) :: tally
       type(diagnostic_t), allocatable :: diagnostics(:)
@@ -121,12 +120,12 @@ contains
       character(:), allocatable :: fault
       type(set_t) :: whole
       integer, allocatable :: crossing(:)
-      integer :: k
+      integer :: k, at
 
       ! Not divided: links are counted as in the deck.
       whole%settings_t = m%settings_t
       whole%parts = [m]
-      scales = scales_by_hand(m)
+      listed = listed_set(name, m)
       links%phi%v = real(m%links%position(3), qp)
       was_flagged = .false.
       do k = 0, instant_count(m) - 1
@@ -141,14 +140,15 @@ contains
             if (any(diagnostics%here)) then
                resting = not_driven(m)
                was_flagged(k) = .true.
-               crossing = links_of(diagnostics(findloc(diagnostics%here, .true., dim=1)))
+               at = findloc(diagnostics%here, .true., dim=1)
+               crossing = pack(diagnostics(at)%links, diagnostics(at)%links > 0)
             end if
          end if
          ! Next to dead points only are digits in doubt.
          error = reshape([real(qp) ::], [3, 3, 0])
          if (index(name, 'dead_point') == 1) error = estimates_by_hand(m, real(instant(m, k), qp))
          diagnostics = [diagnostics, out_of_strokes(m, links)]
-         call put_tables(o, name, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
+         call put_tables(o, listed, k, links, resting, crossing, error, size(diagnostics) > 0, above)
          if (any(diagnostics%kind == diagnostic_stroke)) then
             was_flagged(k) = .true.
             call put(o, ' *** OUT OF STROKE')
@@ -157,11 +157,11 @@ contains
       end do
       ! All of these motions are followed from their first instant on.
       tally%followed = instant_count(m) - 1
-      call put_columns_by_hand(o, name, m, scales)
-      if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
-      if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
+      call put_columns_by_hand(o, listed)
+      if (any(m%requests%extremes)) call put_extremes_by_hand(o, listed, was_flagged)
+      if (m%assemblies) call put_assemblies_by_hand(o, listed)
       if (m%circuits) call put_circuits_by_hand(o)
-      if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
+      if (allocated(m%tolerances)) call put_shares_by_hand(o, listed)
       call divide(m, set)
       call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
          merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0), 0.0_wp, [diagnostic_t ::])
@@ -183,14 +183,6 @@ contains
             diagnostic_t(kind=diagnostic_stroke, pair=i, value=real(row%value(1, 0), wp))]
       end do
    end function out_of_strokes
-
-   !> The numbers of the links of `r`.
-   function links_of(r) result(list)
-      type(diagnostic_t), intent(in) :: r
-      integer, allocatable :: list(:)
-
-      list = pack(r%links, r%links > 0)
-   end function links_of
 
    !> (links) At a change point two branches have the same position, and each has velocities of its own: there are none
    !> but those of the ground and of links whose angle is driven.

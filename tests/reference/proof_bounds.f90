@@ -1,6 +1,6 @@
-!> Tests. `proof_bounds DECK...`: what card PROVE proves of every deck, beside the closed forms in real128. No bound of any
-!> number of any link at any instant is below its true error, and every instant is proved, the
-!> position and the step to it, but instants at a change point and steps that pass one or begin at it. The last line is `N passed, N failed`.
+!> Tests. `proof_bounds DECK...`: what card PROVE proves of every deck, beside the closed forms in real128. No bound of
+!> any number of any link at any instant is below its true error, and every instant is proved, the position and the step
+!> to it, but instants at a change point and steps that pass one or begin at it. The last line is `N passed, N failed`.
 program proof_bounds
    use kinds, only: wp
    use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
@@ -76,8 +76,8 @@ contains
       call count_one(tally, below == 0, name//': no bound is below the true error')
    end subroutine check_set
 
-   !> Why instant number `k` of `m`, the deck `name`, is not proved: is_proved, at_change or passes_change. At a change point all
-   !> links of a loop are in line.
+   !> Why instant number `k` of `m`, the deck `name`, is not proved: is_proved, at_change or passes_change. At a change
+   !> point all links of a loop are in line.
    pure integer function reason_expected(m, name, k) result(reason)
       type(mechanism_t), intent(in) :: m
       character(*), intent(in) :: name
@@ -109,8 +109,8 @@ contains
       end associate
    end function reason_found
 
-   !> The true errors of all links of `m` in its motion `q` beside the bounds of `links` (3, 0:2, links); `below`: bounds
-   !> that are too small.
+   !> The true errors of all links of `m` in its motion `q` beside the bounds of `links` (3, 0:2, links); `below`:
+   !> bounds that are too small.
    subroutine weigh(m, q, links, exact, below)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q

@@ -1,7 +1,8 @@
 !> Tests. The laws of rises in real128: s(u) alone is written down, its derivatives are those of the jets.
 module rise_laws
    use, intrinsic :: iso_fortran_env, only: real64
-   use quad_jet, only: qp, jet_t, pi_q, constant_jet, time_jet, operator(+), operator(-), operator(*), operator(/), sin, &
+   use quad_jet, only: qp, jet_t, pi_q, constant_jet, time_jet, operator(+), operator(-), operator(*), operator(/), &
+      sin, &
       cos
    implicit none
    private

@@ -6,7 +6,8 @@ module scenes_1987
    use deck_tally, only: sets_of
    use scales, only: characteristic_length, power_of_two
    use sample_mechanisms, only: magnified
-   use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, choose_references
+   use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, &
+      choose_references
    use quad_jet, only: qp, pi_q, degree_q, wrap_angle
    use quad_frozen, only: references_t
    use closed_forms_dyads, only: body_t
