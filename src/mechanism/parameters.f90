@@ -158,7 +158,7 @@ contains
          end associate
       case default
          unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
-         if (number%place == 2 .and. m%turns > 0.0_wp) unit = unit_t(powers=0.0_wp, name='')
+         if (number%kind == parameter_time .and. number%place == 2 .and. m%turns > 0.0_wp) unit = unit_t(powers=0.0_wp)
       end select
 
    contains

@@ -249,4 +249,11 @@ moving_four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "
 (ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
 equal '2000 variants: status' 0 $?
 equal '2000 variants: rows' 2000 "$(rows "$w/many.csv" solved | grep -c '^2$')"
+# A time in a table keeps its unit if TIME counts turns; only the duration has none then.
+{ card GROUND BASE; card LINK CRANK; card LINK CAM; card JOINT A BASE CRANK; card JOINT B BASE CAM 5.0; card DRIVE ANGLE CRANK '' '' 10.0
+   card DRIVE ANGLE CAM; card ADD TABLE '' '' 0.0 0.0; card ADD TABLE '' '' 3.0 90.0; vary R1 2 '' 3.0 3.5; card ADD TABLE '' '' 6.0 0.0
+   card TIME 2 TURNS '' 0.0 0.1; card END
+} > "$w/table_turns.deck"
+"$kinmat" "$w/table_turns.deck" > "$w/table_turns.lst"
+equal 'the unit of a time in a table, with TURNS' 'S S' "$(awk '/FIRST FLAG$/ { getline; getline; print $1, $2; exit }' "$w/table_turns.lst")"
 conclude
