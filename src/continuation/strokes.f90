@@ -34,7 +34,7 @@ contains
             do side = 1, 2
                if (bounds(side) >= huge(1.0_wp)) cycle
                way = bounds(side) - length
-               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! at it or beyond
+               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! begins at or beyond it
                if (abs(way) > nearest*abs(rate)) cycle
                left = way/rate
                if (left*sign(1.0_wp, t - continuation%t) < 0.0_wp) cycle
