@@ -8,7 +8,7 @@ module bench_lanes
    use lane_state, only: lanes_t
    use lane_sines, only: max_angle
    use study, only: seconds
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use test_counter, only: test_counter_t, count_one, conclude
    use sine_errors, only: largest_sine_error
    use bench_tools, only: spread_t, spread_of, figure
    use bench_scenes, only: scene_t, new_scene, chain_scene, by_closed_form, steps_of_turn
@@ -92,13 +92,13 @@ contains
    !> more than 0.8 of its last digit.
    subroutine judge_sines(count)
       integer, intent(in) :: count
-      type(certificate_counts_t) :: tally
+      type(test_counter_t) :: counter
       real(wp) :: largest
 
       largest = max(largest_sine_error(count/2, 7.0_wp), largest_sine_error(count/2, max_angle))
       print '(a, i0, a, f5.3)', ' SINES AND COSINES IN LANES OF ', count, &
          ' ANGLES: THE LARGEST ERROR IN LAST DIGITS: ', largest
-      call count_one(tally, largest < 0.8_wp, 'sines and cosines')
-      call conclude(tally)
+      call count_one(counter, largest < 0.8_wp, 'sines and cosines')
+      call conclude(counter)
    end subroutine judge_sines
 end module bench_lanes

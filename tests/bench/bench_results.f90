@@ -3,7 +3,7 @@
 module bench_results
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
+   use test_counter, only: test_counter_t, count_one, conclude, deck_name, sets_of
    use structure, only: structure_report_t, find_structure
    use bench_chains, only: size_t
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
@@ -35,7 +35,7 @@ contains
    subroutine judge_all(inputs, decks, steps)
       character(*), intent(in) :: inputs(:), decks
       integer, intent(in) :: steps
-      type(certificate_counts_t) :: tally
+      type(test_counter_t) :: counter
       type(scene_t) :: s
       integer :: i
 
@@ -45,26 +45,26 @@ contains
          ' of the positions as well: a large angle is rounded coarsely', '', &
          ' SCENE                COMPARED         STEPS  FLAGGED  CONDITION   POSITION   VELOCITY    ACCEL.     PART'
       do i = 1, size(inputs)
-         call judge_deck(trim(inputs(i)), steps, tally)
+         call judge_deck(trim(inputs(i)), steps, counter)
       end do
       do i = 1, size(small)
          s = chain_scene(decks, trim(small(i)%kind), small(i)%n)
-         call judge(s%name, 'BLOCKS, DENSE', gap_of(s, min(steps, 100)), tally)
-         call judge_exactly(s, small(i)%kind, min(steps, 100), tally)
+         call judge(s%name, 'BLOCKS, DENSE', gap_of(s, min(steps, 100)), counter)
+         call judge_exactly(s, small(i)%kind, min(steps, 100), counter)
       end do
       do i = 1, size(large)
          s = chain_scene(decks, trim(large(i)%kind), large(i)%n)
-         call judge_exactly(s, large(i)%kind, min(steps, 10), tally)
+         call judge_exactly(s, large(i)%kind, min(steps, 10), counter)
       end do
-      call judge_change_point(decks, tally)
-      call conclude(tally)
+      call judge_change_point(decks, counter)
+      call conclude(counter)
    end subroutine judge_all
 
    !> Every set of a deck of input/, over the time that it asks for.
-   subroutine judge_deck(path, steps, tally)
+   subroutine judge_deck(path, steps, counter)
       character(*), intent(in) :: path
       integer, intent(in) :: steps
-      type(certificate_counts_t), intent(inout) :: tally
+      type(test_counter_t), intent(inout) :: counter
       type(mechanism_t), allocatable :: sets(:)
       character(:), allocatable :: name
       type(scene_t) :: s
@@ -83,29 +83,29 @@ contains
          s%step = (s%m%t1 - s%m%t0)/steps
          g = gap_of(s, steps)
          if (g%has_change_point) g%flagged = 0
-         call judge(name//' '//achar(iachar('0') + i), 'BLOCKS, DENSE', g, tally)
+         call judge(name//' '//achar(iachar('0') + i), 'BLOCKS, DENSE', g, counter)
          if (.not. associated(s%fast) .or. i > 1) cycle
          e = error_of(s, by_closed_form, steps, 1)
          e%condition = g%condition
-         call judge(name//' '//achar(iachar('0') + i), 'FAST, REAL128', e, tally)
+         call judge(name//' '//achar(iachar('0') + i), 'FAST, REAL128', e, counter)
       end do
    end subroutine judge_deck
 
    !> Blocks and the fast closed form of a chain against what is known of the whole chain.
-   subroutine judge_exactly(s, kind, steps, tally)
+   subroutine judge_exactly(s, kind, steps, counter)
       type(scene_t), intent(in) :: s
       character(*), intent(in) :: kind
       integer, intent(in) :: steps
-      type(certificate_counts_t), intent(inout) :: tally
+      type(test_counter_t), intent(inout) :: counter
       type(gap_t) :: g
 
       g = error_of(s, method_newton, steps, 1)
       g%condition = amplification(s, kind)
-      call judge(s%name, 'BLOCKS, EXACT', g, tally)
+      call judge(s%name, 'BLOCKS, EXACT', g, counter)
       if (kind == 'lattice') return
       g = error_of(s, by_closed_form, steps, 1)
       g%condition = amplification(s, kind)
-      call judge(s%name, 'FAST, EXACT', g, tally)
+      call judge(s%name, 'FAST, EXACT', g, counter)
    end subroutine judge_exactly
 
    !> By how much a chain can magnify a rounding: windows pass an angle on as it is; a scissor and an arm add up angles
@@ -127,9 +127,9 @@ contains
    !> Where all closure equations have no inverse the net can leave its motion; the lattice 7 comes there after 56
    !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only
    !> positions are judged, to what a condition of 1.0e7 leaves of them: another assembly is off by 1.0e-3 and more.
-   subroutine judge_change_point(decks, tally)
+   subroutine judge_change_point(decks, counter)
       character(*), intent(in) :: decks
-      type(certificate_counts_t), intent(inout) :: tally
+      type(test_counter_t), intent(inout) :: counter
       type(scene_t) :: s
       type(gap_t) :: g
 
@@ -139,14 +139,14 @@ contains
       g%worst(2:) = 0.0_wp
       ! Marks are right here.
       g%flagged = 0
-      call judge(s%name, 'CHANGE POINT', g, tally)
+      call judge(s%name, 'CHANGE POINT', g, counter)
    end subroutine judge_change_point
 
    !> One line, and its verdict.
-   subroutine judge(name, what, g, tally)
+   subroutine judge(name, what, g, counter)
       character(*), intent(in) :: name, what
       type(gap_t), intent(in) :: g
-      type(certificate_counts_t), intent(inout) :: tally
+      type(test_counter_t), intent(inout) :: counter
       real(wp) :: part, turn, again
       logical :: good
 
@@ -159,6 +159,6 @@ contains
       good = g%instants > 0 .and. g%flagged == 0 .and. part <= 1.0_wp
       print '(1x, a20, 1x, a14, i8, i8, 4es11.1, es9.1, a)', name//repeat(' ', 20), what//repeat(' ', 14), g%instants, &
          g%flagged, g%condition, g%worst, part, trim(merge('       ', ' FAILED', good))
-      call count_one(tally, good, name//', '//what)
+      call count_one(counter, good, name//', '//what)
    end subroutine judge
 end module bench_results

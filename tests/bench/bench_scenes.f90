@@ -4,7 +4,7 @@ module bench_scenes
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, method_dense
    use motion, only: motion_t, new_motion, flag_none
-   use deck_tally, only: sets_of
+   use test_counter, only: sets_of
    use scales, only: characteristic_length, characteristic_rate
    use lapack, only: gesv
    use closure_equations, only: jacobian

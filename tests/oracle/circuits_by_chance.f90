@@ -12,7 +12,7 @@ program circuits_by_chance
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
    use dice, only: dice_t, new_dice, between, chance, throw
-   use deck_tally, only: count_seeds
+   use test_counter, only: count_seeds
    implicit none
 
    !> A limit is known to so much in rad; circuits as wide as the distance of two values of the drive are found.

@@ -9,7 +9,7 @@ program cylinders_by_chance
    use dice, only: dice_t, new_dice, between, chance, throw
    use arguments, only: argument, number
    use csv_cells, only: cells, cell_length, split, whole_text
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use test_counter, only: test_counter_t, count_one, conclude
    use printed_cards, only: card, polar
    implicit none
 
@@ -60,7 +60,7 @@ program cylinders_by_chance
       character(120) :: words(2, 2) = ''
    end type told_t
 
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    integer :: first, count_of, i
    type(told_t), allocatable :: told(:)
    character(:), allocatable :: why
@@ -505,7 +505,7 @@ contains
             at_assemblies(n, cylinder) = value
          end if
       end do
-      call conclude(tally)
+      call conclude(counter)
    end subroutine check
 
    !> Compares set number `set` with what the CSV has of its instants and assemblies.
@@ -521,7 +521,7 @@ contains
       call check_assemblies(s, told(set), at_assemblies)
       call check_ranges(s, told(set))
       call check_circuits(s, told(set))
-      call count_one(tally, why == '', 'seed '//whole_text(first + set - 1)//':'//why)
+      call count_one(counter, why == '', 'seed '//whole_text(first + set - 1)//':'//why)
    end subroutine check_set
 
    subroutine expect(is_so, what)

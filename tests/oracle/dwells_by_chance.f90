@@ -11,7 +11,7 @@ program dwells_by_chance
    use analysis, only: analysis_t, make_analysis, advance
    use sample_mechanisms, only: four_bar, crank_slider
    use dice, only: dice_t, new_dice, between, chance, throw
-   use deck_tally, only: count_seeds
+   use test_counter, only: count_seeds
    implicit none
 
    !> Roundings of angles and lengths up to 10, over the sine of the angle between the two links of the dyad; on the

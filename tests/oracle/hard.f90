@@ -15,7 +15,7 @@ program hard
    use analysis, only: analysis_t, make_analysis, advance
    use closed_forms_dyads, only: body_t
    use motion_errors, only: exactly_away
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use test_counter, only: test_counter_t, count_one, conclude
    use hard_condition, only: condition_t, measure
    use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, exact_links
    implicit none
@@ -32,7 +32,7 @@ program hard
       integer :: flagged = 0
       real(qp) :: condition = 0.0_qp, worst(0:2) = 0.0_qp
    end type scene_errors_t
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    logical :: short
    character(500) :: argument
    integer :: i
@@ -50,7 +50,7 @@ program hard
    call judge_change_points()
    call judge_angles()
    call judge_sizes()
-   call conclude(tally)
+   call conclude(counter)
 
 contains
 
@@ -211,7 +211,7 @@ contains
          errors%flagged, &
          errors%condition, min(errors%worst, 1.0e7_qp), trim(merge('       ', ' FAILED', good))
       flush (output_unit)
-      call count_one(tally, good, s%name)
+      call count_one(counter, good, s%name)
    end subroutine print_errors
 
    !> (3, links, 0:2) what is divided by; `exists`: the position is not singular.

@@ -5,7 +5,7 @@ module hard_scenes
    use plane_vectors, only: degree
    use quad_jet, only: qp, jet_t, operator(+)
    use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count
-   use deck_tally, only: deck_name, sets_of
+   use test_counter, only: deck_name, sets_of
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, &
       flat

@@ -8,7 +8,7 @@ program lengths_by_chance
    use dice, only: dice_t, new_dice, between, chance, throw, disorder
    use arguments, only: argument, number
    use csv_cells, only: cells, cell_length, split, whole_text
-   use deck_tally, only: certificate_counts_t, count_one, conclude
+   use test_counter, only: test_counter_t, count_one, conclude
    use printed_cards, only: card, polar
    implicit none
 
@@ -43,7 +43,7 @@ program lengths_by_chance
    end type scene_t
 
    type(scene_t) :: scene
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    integer :: first, count_of, i
    real(qp) :: worst(3) = 0.0_qp, condition
    !> The row in hand: the number of its set, and its cells.
@@ -56,7 +56,7 @@ program lengths_by_chance
       call check()
       print '(3(a, es8.1))', 'LARGEST ERROR OF A VALUE ', worst(1), ', OF A SENSITIVITY ', worst(2), &
          ', OVER ITS CONDITION ', worst(3)
-      call conclude(tally)
+      call conclude(counter)
    else
       do i = 1, count_of
          scene = new_scene(first + i - 1)
@@ -401,6 +401,6 @@ contains
       logical, intent(in) :: is_right
       character(*), intent(in) :: words
 
-      call count_one(tally, is_right, 'seed '//whole_text(first + set - 1)//' step '//whole_text(step)//': '//words)
+      call count_one(counter, is_right, 'seed '//whole_text(first + set - 1)//' step '//whole_text(step)//': '//words)
    end subroutine check_that
 end program lengths_by_chance

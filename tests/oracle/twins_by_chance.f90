@@ -8,7 +8,7 @@ program twins_by_chance
    use circuits, only: circuits_t, find_circuits
    use twin_circuits, only: twin_t, throw_twin
    use dice, only: dice_t, new_dice
-   use deck_tally, only: count_seeds
+   use test_counter, only: count_seeds
    implicit none
 
    !> A limit is known to so much in rad and lengths.

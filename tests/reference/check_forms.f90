@@ -15,7 +15,7 @@ program check_forms
    use quad_decks, only: length, angle, law
    use jet_closure, only: numbers_of, closure_jets
    use closed_forms_dyads, only: body_t
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
+   use test_counter, only: test_counter_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    use hand_groups, only: count_by_hand
    use hand_links, only: sort_links
@@ -24,14 +24,14 @@ program check_forms
    real(qp), parameter :: tolerance = 1.0e-28_qp
    character(*), parameter :: order(0:2) = [character(18) :: 'positions', 'velocities', 'accelerations']
    character(500) :: path
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    integer :: i
 
    do i = 1, command_argument_count()
       call get_command_argument(i, path)
       call check_deck(trim(path))
    end do
-   call conclude(tally)
+   call conclude(counter)
 
 contains
 
@@ -44,7 +44,7 @@ contains
 
       name = deck_name(path)
       call read_deck(path, sets, report, failure)
-      call count_one(tally, .not. allocated(failure), path//': the deck is read')
+      call count_one(counter, .not. allocated(failure), path//': the deck is read')
       if (allocated(failure)) return
       do i = 1, size(sets)
          call check_set(name, sets(i))
@@ -62,7 +62,7 @@ contains
       integer :: i, k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
-      call count_one(tally, agree(count_by_hand(name), find_structure(m)), &
+      call count_one(counter, agree(count_by_hand(name), find_structure(m)), &
          trim(what)//' links and pairs as counted by hand')
       pairs = 0.0_qp
       grounds = 0.0_qp
@@ -77,7 +77,7 @@ contains
          call check_grounds(m, links, grounds)
          call check_drives(m, links, f, r(2*size(m%pairs) + 1:), driven)
       end do
-      call count_one(tally, fault == '', trim(what)//' links by name')
+      call count_one(counter, fault == '', trim(what)//' links by name')
       do k = 0, 2
          call count_size(pairs(k), trim(what)//' pairs, '//order(k))
          call count_size(grounds(k), trim(what)//' ground links, '//order(k))
@@ -301,6 +301,6 @@ contains
       character(12) :: text
 
       write (text, '(es12.2)') worst
-      call count_one(tally, worst <= tolerance, trim(what)//': relative error'//text)
+      call count_one(counter, worst <= tolerance, trim(what)//': relative error'//text)
    end subroutine count_size
 end program check_forms

@@ -12,7 +12,7 @@ program error_estimates
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
+   use test_counter, only: test_counter_t, count_one, conclude, deck_name, sets_of
    use closed_forms, only: closed_form
    implicit none
    real(wp), parameter :: max_above = 30.0_wp
@@ -27,7 +27,7 @@ program error_estimates
    end type estimate_counts_t
 
    type(estimate_counts_t) :: one, all_of_them
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    character(500) :: path
    integer :: i
 
@@ -38,12 +38,12 @@ program error_estimates
       one = estimate_counts_t()
       call weigh_deck(trim(path), one)
       call print_counts(deck_name(trim(path)), one)
-      call count_one(tally, one%below == 0, deck_name(trim(path))//': no estimate below its error')
+      call count_one(counter, one%below == 0, deck_name(trim(path))//': no estimate below its error')
       call add(one, all_of_them)
    end do
    call print_counts('all', all_of_them)
-   call count_one(tally, seldom*all_of_them%above <= all_of_them%instants, 'estimates that are much too large')
-   call conclude(tally)
+   call count_one(counter, seldom*all_of_them%above <= all_of_them%instants, 'estimates that are much too large')
+   call conclude(counter)
 
 contains
 

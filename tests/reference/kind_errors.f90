@@ -14,7 +14,7 @@ program kind_errors
    use deck, only: read_deck
    use quad_jet, only: qp, degree_q, wrap_angle
    use closed_forms_dyads, only: body_t, motion_of
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
+   use test_counter, only: test_counter_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    use csv_cells, only: cells, cell_length, split
    use csv_closure, only: verdict_t, check_csv
@@ -59,7 +59,7 @@ program kind_errors
    end type errors_t
 
    character(500) :: path
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    integer :: hits = 0, i
 
    print '(a,i0,a)', ' LARGEST RELATIVE ERRORS OF LENGTHS AND ANGLES, COMPUTED WITH ', digits(1.0_wp), ' BITS'
@@ -68,8 +68,8 @@ program kind_errors
       call get_command_argument(i, path)
       call check_deck(trim(path))
    end do
-   call count_one(tally, hits == size(known), 'all motions known to 50 digits')
-   call conclude(tally)
+   call count_one(counter, hits == size(known), 'all motions known to 50 digits')
+   call conclude(counter)
 
 contains
 
@@ -85,12 +85,12 @@ contains
 
       name = deck_name(path)
       call read_deck(path, sets, report, failure)
-      call count_one(tally, .not. allocated(failure), path//': the deck is read')
+      call count_one(counter, .not. allocated(failure), path//': the deck is read')
       if (allocated(failure)) return
       associate (csv => path(:len(path) - len('deck'))//'csv')
          call check_csv(csv, sets, v)
          if (.not. allocated(v%text)) v%text = ''
-         call count_one(tally, v%text == '', name//': equations: '//v%text)
+         call count_one(counter, v%text == '', name//': equations: '//v%text)
          open (newunit=unit, file=csv, status='old', action='read', iostat=status)
       end associate
       allocate (e(size(sets)))
@@ -118,8 +118,8 @@ contains
 
       write (what, '(1x,2a,i0)') name, ', ', m%set_number
       if (digits(1.0_wp) >= bits_enough .or. .not. has_change(name)) &
-         call count_one(tally, e%all_given .and. all(e%seen), what//' all moving links at all instants')
-      call count_one(tally, any(e%seen .and. .not. spread(m%links%ground, 2, instant_count(m))), what//' some results')
+         call count_one(counter, e%all_given .and. all(e%seen), what//' all moving links at all instants')
+      call count_one(counter, any(e%seen .and. .not. spread(m%links%ground, 2, instant_count(m))), what//' some results')
       do k = 0, 2
          associate (rate => real(characteristic_rate(m, characteristic_length(m)), qp)**k)
             e%value(:, k) = max(e%value(:, k), [characteristic_length(m)*rate, rate])
@@ -132,10 +132,10 @@ contains
       if (k > 0) limit = limits(inverse_dead(k))
       if (any(rounded_sets == what(2:))) limit = max(limit, rounded_data)
       print '(a,3es12.2,2x,3es10.1)', what, worst, limit
-      call count_one(tally, all(worst <= limit), what//' errors')
+      call count_one(counter, all(worst <= limit), what//' errors')
       if (all(at_change /= name)) return
       print '(a,es12.2,26x,es10.1)', what, e%there, roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0))
-      call count_one(tally, e%there <= roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0)), &
+      call count_one(counter, e%there <= roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0)), &
          what//' errors at change points')
    end subroutine judge
 
@@ -210,7 +210,7 @@ contains
          off(3, 0) = wrap_angle(off(3, 0))
          allowed = spread(limits(inverse), 1, 3)*max(1.0_qp, abs(reshape(known(i)%value, [3, 3])))
          hits = hits + 1
-         call count_one(tally, all(abs(off) <= allowed), name//': 50 digits')
+         call count_one(counter, all(abs(off) <= allowed), name//': 50 digits')
       end do
    end subroutine compare_known
 

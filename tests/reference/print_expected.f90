@@ -25,7 +25,7 @@ program print_expected
    use hand_estimates, only: estimates_by_hand
    use hand_tables, only: above_t, put_tables
    use closed_forms_dyads, only: body_t
-   use deck_tally, only: deck_name
+   use test_counter, only: deck_name
    use closed_forms, only: closed_form
    use hand_links, only: move_links_to
    use hand_columns, only: put_columns_by_hand

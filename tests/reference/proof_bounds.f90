@@ -13,7 +13,7 @@ program proof_bounds
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
+   use test_counter, only: test_counter_t, count_one, conclude, deck_name, sets_of
    use closed_forms, only: closed_form
    use hand_groups, only: change_times
    implicit none
@@ -24,7 +24,7 @@ program proof_bounds
       enumerator :: is_proved = 0, at_change, passes_change, other_reason
    end enum
 
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
    character(500) :: path
    real(wp) :: worst(0:2)
    integer :: i
@@ -35,7 +35,7 @@ program proof_bounds
       call check_deck(trim(path))
    end do
    print '(a,3f8.4)', ' LARGEST TRUE ERROR OVER ITS BOUND: POSITION, VELOCITY, ACCELERATION', worst
-   call conclude(tally)
+   call conclude(counter)
 
 contains
 
@@ -72,8 +72,8 @@ contains
          end do
       end do
       if (open > 0 .or. wrong > 0) print '(1x,a,i0,a,i0)', name//', ', m%set_number, ': NOT PROVED ', open
-      call count_one(tally, wrong == 0, name//': every step is proved but at change points')
-      call count_one(tally, below == 0, name//': no bound is below the true error')
+      call count_one(counter, wrong == 0, name//': every step is proved but at change points')
+      call count_one(counter, below == 0, name//': no bound is below the true error')
    end subroutine check_set
 
    !> Why instant number `k` of `m`, the deck `name`, is not proved: is_proved, at_change or passes_change. At a change

@@ -6,11 +6,11 @@
 !>    matrix_1987 short     rates against the theory, judged; the last line is `N passed, N failed`
 program matrix_1987
    use rates_1987, only: rates_table, constants_table, picture_numbers, judge_rates
-   use deck_tally, only: certificate_counts_t, conclude
+   use test_counter, only: test_counter_t, conclude
    use runs_1987, only: basins_table, counts_table, decks_table, times_table
    implicit none
    character(16) :: part
-   type(certificate_counts_t) :: tally
+   type(test_counter_t) :: counter
 
    call get_command_argument(1, part)
    select case (part)
@@ -25,8 +25,8 @@ program matrix_1987
    case ('picture')
       call picture_numbers()
    case ('short')
-      call judge_rates(tally)
-      call conclude(tally)
+      call judge_rates(counter)
+      call conclude(counter)
    case default
       error stop 'MATRIX_1987: WHICH PART?'
    end select

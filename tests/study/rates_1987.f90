@@ -3,7 +3,7 @@
 module rates_1987
    use kinds, only: wp
    use quad_jet, only: degree_q
-   use deck_tally, only: certificate_counts_t, count_one
+   use test_counter, only: test_counter_t, count_one
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
    use iteration_1987, only: by_print, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, rate_measured, &
       order_measured, run_t, iterate_from, went_right
@@ -172,8 +172,8 @@ contains
 
    !> At every 15 degrees: measurement and theory agree; from close by the iteration arrives where the theory says less
    !> than 1, and nowhere else; Newton's order is 2.
-   subroutine judge_rates(tally)
-      type(certificate_counts_t), intent(inout) :: tally
+   subroutine judge_rates(counter)
+      type(test_counter_t), intent(inout) :: counter
       type(scene_t) :: s
       integer :: i, k, variant
 
@@ -181,21 +181,21 @@ contains
          s = new_scene(i)
          do variant = by_print, by_step
             do k = 0, 345, 15
-               call judge_one(s, variant, k, tally)
+               call judge_one(s, variant, k, counter)
             end do
          end do
          do k = 0, 345, 15
             ! The next term of the error, 1e-3 of the second, and its factor of some units.
-            call count_one(tally, abs(order_measured(s, by_tangent, k) - 2.0_wp) <= 0.02_wp, &
+            call count_one(counter, abs(order_measured(s, by_tangent, k) - 2.0_wp) <= 0.02_wp, &
                scene_text(s, by_tangent, k)//'order 2')
          end do
       end do
    end subroutine judge_rates
 
-   subroutine judge_one(s, variant, angle, tally)
+   subroutine judge_one(s, variant, angle, counter)
       type(scene_t), intent(inout) :: s
       integer, intent(in) :: variant, angle
-      type(certificate_counts_t), intent(inout) :: tally
+      type(test_counter_t), intent(inout) :: counter
       !> Relative, and what rounding (1e-16 of 1e-6 a step, times a condition of 100) and the square of the error leave.
       real(wp), parameter :: tolerance = 0.05_wp, rounding = 1.0e-3_wp
       !> At a rate of 0.98 an error of 0.01 takes 1300 iterations to the rounding level.
@@ -206,13 +206,13 @@ contains
       expected = rate_by_theory(s, variant, angle)
       found = rate_measured(s, variant, angle, steps)
       ! Beside a place where A is singular it has an inverse, which throws the iteration far away.
-      call count_one(tally, merge(found < 0.0_wp .or. found > 1.0e3_wp, &
+      call count_one(counter, merge(found < 0.0_wp .or. found > 1.0e3_wp, &
          abs(found - expected) <= tolerance*expected + rounding, expected < 0.0_wp), &
          scene_text(s, variant, angle)//'the rate is that of the theory')
       ! So close to 1 neither end would come.
       if (abs(expected - 1.0_wp) < 0.02_wp) return
       run = iterate_from(s, variant, exact(s, angle - 1), angle, limit)
-      call count_one(tally, (run%ended == went_right) .eqv. (expected >= 0.0_wp .and. expected < 1.0_wp), &
+      call count_one(counter, (run%ended == went_right) .eqv. (expected >= 0.0_wp .and. expected < 1.0_wp), &
          scene_text(s, variant, angle)//'it arrives where the rate is below 1')
    end subroutine judge_one
 

@@ -3,7 +3,7 @@
 module scenes_1987
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use deck_tally, only: sets_of
+   use test_counter, only: sets_of
    use scales, only: characteristic_length, power_of_two
    use sample_mechanisms, only: magnified
    use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, &

@@ -1,6 +1,6 @@
 !> Tests. What the programs that run over decks or seeds have in common: the name of a deck and its sets, and a count of
 !> what was right.
-module deck_tally
+module test_counter
    use failures, only: failure_t
    use mechanism, only: mechanism_t
    use deck, only: read_deck
@@ -8,33 +8,33 @@ module deck_tally
    use csv_cells, only: whole_text
    implicit none
    private
-   public :: certificate_counts_t, count_one, conclude, count_seeds, deck_name, sets_of
+   public :: test_counter_t, count_one, conclude, count_seeds, deck_name, sets_of
 
-   type :: certificate_counts_t
+   type :: test_counter_t
       integer :: passed = 0, failed = 0
-   end type certificate_counts_t
+   end type test_counter_t
 
 contains
 
-   subroutine count_one(tally, good, what)
-      type(certificate_counts_t), intent(inout) :: tally
+   subroutine count_one(counter, good, what)
+      type(test_counter_t), intent(inout) :: counter
       logical, intent(in) :: good
       character(*), intent(in) :: what
 
       if (good) then
-         tally%passed = tally%passed + 1
+         counter%passed = counter%passed + 1
       else
-         tally%failed = tally%failed + 1
+         counter%failed = counter%failed + 1
          print '(2a)', 'FAILED: ', what
       end if
    end subroutine count_one
 
    !> Prints the last line; the program ends with status 1 where something was wrong.
-   subroutine conclude(tally)
-      type(certificate_counts_t), intent(in) :: tally
+   subroutine conclude(counter)
+      type(test_counter_t), intent(in) :: counter
 
-      print '(i0,a,i0,a)', tally%passed, ' passed, ', tally%failed, ' failed'
-      if (tally%failed > 0) stop 1, quiet=.true.
+      print '(i0,a,i0,a)', counter%passed, ' passed, ', counter%failed, ' failed'
+      if (counter%failed > 0) stop 1, quiet=.true.
    end subroutine conclude
 
    !> Counts the seeds that agree, and ends the program. The words of the command are their number (`otherwise` if there
@@ -46,14 +46,14 @@ contains
          end function agrees
       end interface
       integer, intent(in) :: otherwise
-      type(certificate_counts_t) :: tally
+      type(test_counter_t) :: counter
       integer :: seed, first
 
       first = number(2, 1)
       do seed = first, first + number(1, otherwise) - 1
-         call count_one(tally, agrees(seed), 'seed '//whole_text(seed))
+         call count_one(counter, agrees(seed), 'seed '//whole_text(seed))
       end do
-      call conclude(tally)
+      call conclude(counter)
    end subroutine count_seeds
 
    !> The file's name without its folders and what follows a dot.
@@ -75,4 +75,4 @@ contains
       call read_deck(path, sets, report, failure)
       if (allocated(failure)) error stop 'A DECK IS NOT READ'
    end function sets_of
-end module deck_tally
+end module test_counter
