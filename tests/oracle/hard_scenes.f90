@@ -10,7 +10,7 @@ module hard_scenes
    use closed_forms_dyads, only: place_t, body_t, origin, fixed_place, polar, corner, bars, direction, slider_crank, &
       flat
    use closed_forms, only: closed_form
-   use hand_links, only: sort_links
+   use expected_links, only: sort_links
    use sample_mechanisms, only: four_bar, crank_slider, magnified
    implicit none
    private

@@ -17,8 +17,8 @@ program check_forms
    use closed_forms_dyads, only: body_t
    use test_counter, only: test_counter_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
-   use hand_groups, only: count_by_hand
-   use hand_links, only: sort_links
+   use expected_groups, only: count_by_hand
+   use expected_links, only: sort_links
    implicit none
    !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
    real(qp), parameter :: tolerance = 1.0e-28_qp

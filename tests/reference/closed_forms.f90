@@ -10,7 +10,7 @@ module closed_forms
    use closed_forms_overconstrained, only: overconstrained
    use closed_forms_assemblies, only: platform_assemblies, platform
    use closed_forms_published, only: published
-   use hand_tolerances, only: tolerant_links
+   use expected_tolerances, only: tolerant_links
    implicit none
    private
    public :: closed_form

@@ -9,7 +9,7 @@ program print_expected
    use motion, only: diagnostic_t, diagnostic_stroke
    use structure, only: structure_report_t
    use continuation, only: certificate_counts_t
-   use hand_groups, only: count_by_hand, groups_by_hand, redundant_by_hand, passages_by_hand
+   use expected_groups, only: count_by_hand, groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
    use independent, only: set_t, divide
@@ -20,18 +20,18 @@ program print_expected
    use text_output, only: output_t, open_output, close_output, put
    use listing, only: new_layout, listing_head, listing_end, write_diagnostics
    use quad_jet, only: qp
-   use hand_scales, only: listed_t, listed_set
-   use hand_rows, only: hand_row_t, row_by_hand
-   use hand_estimates, only: estimates_by_hand
-   use hand_tables, only: above_t, put_tables
+   use expected_scales, only: listed_t, listed_set
+   use expected_rows, only: expected_row_t, row_by_hand
+   use expected_estimates, only: estimates_by_hand
+   use expected_tables, only: above_t, put_tables
    use closed_forms_dyads, only: body_t
    use test_counter, only: deck_name
    use closed_forms, only: closed_form
-   use hand_links, only: move_links_to
-   use hand_columns, only: put_columns_by_hand
-   use hand_tolerances, only: put_shares_by_hand
-   use hand_extremes, only: put_extremes_by_hand
-   use hand_assemblies, only: put_assemblies_by_hand, put_circuits_by_hand
+   use expected_links, only: move_links_to
+   use expected_columns, only: put_columns_by_hand
+   use expected_tolerances, only: put_shares_by_hand
+   use expected_extremes, only: put_extremes_by_hand
+   use expected_assemblies, only: put_assemblies_by_hand, put_circuits_by_hand
    implicit none
    character(500) :: path
    character(:), allocatable :: name, report
@@ -172,7 +172,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
       type(diagnostic_t), allocatable :: list(:)
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       integer :: i
 
       allocate (list(0))

@@ -15,7 +15,7 @@ program proof_bounds
    use motion_errors, only: away
    use test_counter, only: test_counter_t, count_one, conclude, deck_name, sets_of
    use closed_forms, only: closed_form
-   use hand_groups, only: change_times
+   use expected_groups, only: change_times
    implicit none
 
    !> Times of instants agree with those of change points up to this.

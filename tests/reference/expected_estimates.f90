@@ -1,13 +1,13 @@
 !> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as docs/method.md defines it: by how
 !> much its closed form in real128 changes, to first order, where all numbers of its cards are off by roundings times
 !> normal deviates, in eight ways, by a hash that is written down here again.
-module hand_estimates
+module expected_estimates
    use, intrinsic :: iso_fortran_env, only: int64, real64
    use mechanism, only: mechanism_t, pair_prismatic
    use quad_jet, only: qp, pi_q
    use closed_forms_sliders, only: pushed_slider
-   use hand_rows, only: hand_row_t, row_by_hand
-   use hand_scales, only: length_by_hand
+   use expected_rows, only: expected_row_t, row_by_hand
+   use expected_scales, only: length_by_hand
    implicit none
    private
    public :: estimates_by_hand
@@ -92,7 +92,7 @@ contains
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: numbers(number_count)
       real(qp) :: value(3, 0:2, size(m%requests))
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       integer :: i
 
       do i = 1, size(m%requests)
@@ -173,4 +173,4 @@ contains
       error(2, :, :) = error(1, :, :)
       error(3, :, :) = spread(sum_roundings*rounding*angles, 2, size(m%requests))
    end function sum_errors
-end module hand_estimates
+end module expected_estimates

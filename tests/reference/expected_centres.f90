@@ -1,12 +1,12 @@
 !> Tests. The rows of the cards POLE and CURVE as the listing must print them, from the places of the links as jets in
 !> real128: the instant centre is the place that has one velocity in both links; the path of a point is written down in
 !> the axes of the link from which it is seen, and differentiated there. Nothing of the program's centres is used.
-module hand_centres
+module expected_centres
    use mechanism, only: request_t, request_pole
    use quad_jet, only: qp, pi_q, degree_q
    use closed_forms_dyads, only: body_t, place_t, fixed_place, place_on, seen_from
-   use hand_scales, only: listed_t
-   use hand_numbers, only: number_by_hand, power_text, field_length
+   use expected_scales, only: listed_t
+   use expected_numbers, only: number_by_hand, power_text, field_length
    use text_output, only: output_t, put
    implicit none
    private
@@ -200,4 +200,4 @@ contains
 
       field = number_by_hand(merge(x/degree_q, x, m%degrees), 0.0_qp, m%scales%decimals(2, 0), m%scales%power(2, 0))
    end function angle
-end module hand_centres
+end module expected_centres

@@ -1,15 +1,15 @@
 !> Tests. The table of COLUMN cards as the listing must print it, from closed forms in real128: a line for each instant.
 !> In the decks of input/ no line is too long, no instant has a flag, and of ratios alone a derivative is asked for.
-module hand_columns
+module expected_columns
    use mechanism, only: instant_count, instant, drive_angle, drive_relangle
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: listed_t
-   use hand_numbers, only: number_by_hand, power_text, field_length
-   use hand_links, only: move_links_to
-   use hand_rows, only: hand_row_t, column_word, drive_word, listed_name
-   use hand_ratios, only: row_at, unit_of
+   use expected_scales, only: listed_t
+   use expected_numbers, only: number_by_hand, power_text, field_length
+   use expected_links, only: move_links_to
+   use expected_rows, only: expected_row_t, column_word, drive_word, listed_name
+   use expected_ratios, only: row_at, unit_of
    use text_output, only: output_t, put
    implicit none
    private
@@ -25,7 +25,7 @@ contains
       type(output_t), intent(inout) :: o
       type(listed_t), intent(in) :: m
       type(body_t) :: links(size(m%links), instant_count(m%mechanism_t))
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       type(jet_t) :: f
       real(qp) :: t(instant_count(m%mechanism_t)), x(instant_count(m%mechanism_t))
       character(line_length) :: line(1 - heads:instant_count(m%mechanism_t))
@@ -95,4 +95,4 @@ contains
          used = used + width
       end subroutine put_column
    end subroutine put_columns_by_hand
-end module hand_columns
+end module expected_columns

@@ -1,7 +1,7 @@
 !> Tests. The structure of the decks in input/, counted and stated by hand from the drawings: numbers of links and
 !> pairs, Assur groups, redundant equations, change points. Groups: crank first, then dyad upon dyad; a star stands
 !> before a group that holds a drive.
-module hand_groups
+module expected_groups
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: structure_report_t, group_t
@@ -251,4 +251,4 @@ contains
       end do
       g%links = pack([(i, i=1, size(m%links))], is_in)
    end function group
-end module hand_groups
+end module expected_groups

@@ -1,16 +1,16 @@
 !> Tests. The table of extremes as the listing must print it, from closed forms in real128: each number on a fine grid
 !> of times, then by golden section around the grid's largest and least values. Only dead centres use a derivative, the
 !> velocity.
-module hand_extremes
+module expected_extremes
    use mechanism, only: request_link, request_point, request_ratio
    use quad_jet, only: qp, degree_q, wrap_angle
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: listed_t, length_by_hand, rate_by_hand
-   use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: hand_row_t, column_word, drive_word
-   use hand_ratios, only: row_at
-   use hand_links, only: move_links_to
-   use hand_tables, only: put_heads, put_ratio_heads, with_unit, drive_value, instant_text
+   use expected_scales, only: listed_t, length_by_hand, rate_by_hand
+   use expected_numbers, only: number_by_hand, field_length
+   use expected_rows, only: expected_row_t, column_word, drive_word
+   use expected_ratios, only: row_at
+   use expected_links, only: move_links_to
+   use expected_tables, only: put_heads, put_ratio_heads, with_unit, drive_value, instant_text
    use text_output, only: output_t, put
    implicit none
    private
@@ -32,7 +32,7 @@ module hand_extremes
       !> How far all links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(qp) :: closure(3) = 0.0_qp
       logical :: reverses = .false.                    !< some column does, twice or more
-      type(hand_row_t), allocatable :: row(:, :)       !< (asked, 0:cells)
+      type(expected_row_t), allocatable :: row(:, :)       !< (asked, 0:cells)
    end type grid_t
 
    type :: extreme_t
@@ -225,7 +225,7 @@ contains
       integer, intent(in) :: q, c, k, i
       real(qp), intent(in) :: t
       type(body_t) :: links(size(m%links))
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       character(:), allocatable :: fault
 
       links%phi%v = g%phi(:, i)
@@ -390,7 +390,7 @@ contains
    !> Number (c, k) of `row`, in the unit of its column.
    function number_of(m, row, c, k, value) result(text)
       type(listed_t), intent(in) :: m
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       integer, intent(in) :: c, k
       real(qp), intent(in) :: value
       character(field_length) :: text
@@ -414,7 +414,7 @@ contains
    !> A line of `fields` (3, 0:2) in the columns of `row`.
    subroutine put_line(o, row, label, fields)
       type(output_t), intent(inout) :: o
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       character(*), intent(in) :: label
       character(field_length), intent(in) :: fields(3, 0:2)
       character(9 + 9*field_length) :: line
@@ -590,4 +590,4 @@ contains
       end do
       t = inside
    end function leaves
-end module hand_extremes
+end module expected_extremes

@@ -1,18 +1,18 @@
 !> Tests. The tables of one instant as the listing must print them, from closed forms in real128: the line over them
 !> with the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's
 !> tables is used.
-module hand_tables
+module expected_tables
    use mechanism, only: drive_t, instant_count, instant, request_pair, request_measure, request_pole, &
       request_ratio, drive_angle, drive_relangle
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: listed_t
-   use hand_numbers, only: number_by_hand, power_text, field_length
-   use hand_rows, only: hand_row_t, has_form, pair_slots, column_word, drive_word, listed_name
-   use hand_ratios, only: row_at, unit_of
-   use hand_tolerances, only: spread_lines
-   use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
+   use expected_scales, only: listed_t
+   use expected_numbers, only: number_by_hand, power_text, field_length
+   use expected_rows, only: expected_row_t, has_form, pair_slots, column_word, drive_word, listed_name
+   use expected_ratios, only: row_at, unit_of
+   use expected_tolerances, only: spread_lines
+   use expected_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
    implicit none
    private
@@ -83,7 +83,7 @@ contains
       real(qp), intent(in) :: error(:, 0:, :)
       logical, intent(in) :: remarks
       type(above_t), intent(inout) :: above
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       character(line_length) :: line
       character(120) :: spreads(2)
       integer :: i, k, kind
@@ -212,7 +212,7 @@ contains
    subroutine put_ratio_heads(o, m, row)
       type(output_t), intent(inout) :: o
       type(listed_t), intent(in) :: m
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       character(line_length) :: line(3)
       integer :: k
 
@@ -314,7 +314,7 @@ contains
    !> The line of `row`, of which derivatives up to `known` exist.
    function row_line(m, row, known, error) result(line)
       type(listed_t), intent(in) :: m
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       integer, intent(in) :: known
       real(qp), intent(in) :: error(3, 0:2)
       character(line_length) :: line
@@ -338,4 +338,4 @@ contains
          end do
       end do
    end function row_line
-end module hand_tables
+end module expected_tables

@@ -1,11 +1,11 @@
 !> Tests. The answers to cards ASSEMBLY and CIRCUITS as the listing must print them, from closed forms in real128.
-module hand_assemblies
+module expected_assemblies
    use quad_jet, only: qp, degree_q, time_jet, wrap_angle
    use closed_forms_dyads, only: body_t
    use closed_forms_assemblies, only: platform_assemblies, platform, crank_limit
    use closed_forms_four_bars, only: triple_rocker
-   use hand_scales, only: listed_t, length_by_hand
-   use hand_tables, only: instant_text
+   use expected_scales, only: listed_t, length_by_hand
+   use expected_tables, only: instant_text
    use text_output, only: output_t, put
    implicit none
    private
@@ -166,4 +166,4 @@ contains
       write (number, '(f20.8)') x/degree_q
       text = trim(adjustl(number))
    end function in_degrees
-end module hand_assemblies
+end module expected_assemblies

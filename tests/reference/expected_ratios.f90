@@ -1,11 +1,11 @@
 !> Tests. Rows at any time; of ratios from a motion in which one drive moves alone; and units.
-module hand_ratios
+module expected_ratios
    use mechanism, only: request_t, request_ratio, drive_angle, drive_relangle
    use quad_jet, only: qp, degree_q
    use closed_forms_dyads, only: body_t
-   use hand_links, only: links_by_drive
-   use hand_rows, only: hand_row_t, row_by_hand, drive_word
-   use hand_scales, only: listed_t, ratio_of
+   use expected_links, only: links_by_drive
+   use expected_rows, only: expected_row_t, row_by_hand, drive_word
+   use expected_scales, only: listed_t, ratio_of
    implicit none
    private
    public :: row_at, unit_of
@@ -23,7 +23,7 @@ contains
       real(qp), intent(in) :: t
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       real(qp) :: units(2)
       integer :: of_drive
 
@@ -61,4 +61,4 @@ contains
       if (dimension <= 2 .and. k > 0) unit = unit//'/'//trim(m%time_unit)
       if (k == merge(2, 1, dimension <= 2)) unit = unit//'**2'
    end function unit_of
-end module hand_ratios
+end module expected_ratios

@@ -1,6 +1,6 @@
 !> Tests. Numbers of real128 as a table must print them, in fields of twelve columns: with so many decimals, fewer where
 !> there is no room, with an exponent where that is not enough; digits that are not known are question marks.
-module hand_numbers
+module expected_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use quad_jet, only: qp
    implicit none
@@ -145,4 +145,4 @@ contains
          left = left - 1
       end do
    end subroutine mask_last
-end module hand_numbers
+end module expected_numbers

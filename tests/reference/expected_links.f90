@@ -1,5 +1,5 @@
 !> Tests. The links of a deck at any time by its closed form, angles without leaps; and with one drive that moves alone.
-module hand_links
+module expected_links
    use mechanism, only: mechanism_t
    use quad_jet, only: qp, jet_t, constant_jet, time_jet, wrap_angle
    use closed_forms_dyads, only: body_t
@@ -72,4 +72,4 @@ contains
          if (k > 0) links(k) = found(i)
       end do
    end subroutine sort_links
-end module hand_links
+end module expected_links

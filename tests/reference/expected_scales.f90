@@ -1,7 +1,7 @@
 !> Tests. The decimals and powers of ten of the tables of a deck, computed in real128 from the numbers of its cards by
 !> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is
 !> used.
-module hand_scales
+module expected_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
       term_harmonic, term_power, term_table, term_kinds
    use rise_laws, only: peak_rate
@@ -11,15 +11,15 @@ module hand_scales
    public :: listed_t, listed_set, length_by_hand, rate_by_hand, ratio_of
 
    !> (dimension, derivative), and those of the time. A dimension is a length (1), an angle (2), or that of a ratio.
-   type :: hand_scales_t
+   type :: expected_scales_t
       integer :: decimals(6, 0:2) = 0, power(6, 0:2) = 0
       integer :: time_decimals = 0, time_power = 0
-   end type hand_scales_t
+   end type expected_scales_t
 
    !> A set of computations with what all of its tables need.
    type, extends(mechanism_t) :: listed_t
       character(:), allocatable :: name        !< of the deck
-      type(hand_scales_t) :: scales
+      type(expected_scales_t) :: scales
       integer :: language = 1                  !< English (1) or Polish (2)
    end type listed_t
 
@@ -37,11 +37,11 @@ contains
 
       listed%mechanism_t = m
       listed%name = name
-      listed%scales = scales_by_hand(m)
+      listed%scales = scales_of_deck(m)
       listed%language = merge(2, 1, m%polish)
    end function listed_set
 
-   type(hand_scales_t) function scales_by_hand(m) result(s)
+   type(expected_scales_t) function scales_of_deck(m) result(s)
       class(mechanism_t), intent(in) :: m
       real(qp) :: length, rate, turn, sizes(2)
       integer :: k, quantity, drive
@@ -66,7 +66,7 @@ contains
             end associate
          end do
       end do
-   end function scales_by_hand
+   end function scales_of_deck
 
    !> The dimension of the ratio of a quantity to a drive, each a length (1) or an angle (2).
    pure integer function ratio_of(quantity, drive) result(dimension)
@@ -196,4 +196,4 @@ contains
          end associate
       end do
    end function rate_of
-end module hand_scales
+end module expected_scales

@@ -1,6 +1,6 @@
 !> Tests. The rows of the tables from the places of the links, as jets in real128: a link's own, those of its points,
 !> of pairs the angle or the slide, and measures; and the names of rows, also of ratios.
-module hand_rows
+module expected_rows
    use mechanism, only: mechanism_t, drive_t, request_t, request_link, request_point, request_pair, request_measure, &
       request_ratio, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, pair_prismatic, &
       measure_distance, measure_line, measure_angle, measure_xi, measure_sum
@@ -8,7 +8,7 @@ module hand_rows
    use closed_forms_dyads, only: body_t, place_t, body, place_on, seen_from, direction, distance_squared
    implicit none
    private
-   public :: hand_row_t, row_by_hand, has_form, pair_slots, listed_name, column_word, drive_word
+   public :: expected_row_t, row_by_hand, has_form, pair_slots, listed_name, column_word, drive_word
 
    !> Where the value, velocity and acceleration of slides stand, or those of angles where there are no slides; and
    !> where those of angles stand beside slides.
@@ -19,7 +19,7 @@ module hand_rows
 
    !> A row of the kind `kind` of a request; `column`: which of x, y, phi its values stand under, a slide under x and
    !> the angle of a pair under phi; `links`: those that it depends on.
-   type :: hand_row_t
+   type :: expected_row_t
       integer :: kind = request_link
       character(8) :: name = ''
       character(:), allocatable :: by        !< the drive of a ratio, as `drive_word`
@@ -30,7 +30,7 @@ module hand_rows
       integer, allocatable :: links(:)
       logical :: coincides = .false.         !< two points of a measure are at one place
       real(qp) :: value(3, 0:2) = 0.0_qp
-   end type hand_row_t
+   end type expected_row_t
 
 contains
 
@@ -39,7 +39,7 @@ contains
       class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       type(request_t), intent(in) :: request
-      type(hand_row_t) :: row
+      type(expected_row_t) :: row
       type(place_t) :: p
 
       row%kind = request%kind
@@ -79,7 +79,7 @@ contains
 
    !> The name of `row`, of a ratio with that of its drive.
    function listed_name(row, polish) result(text)
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
@@ -109,7 +109,7 @@ contains
 
    !> The name of column `c` of a row: of its derivative number `k`, which only a ratio has here, or of its value.
    function column_word(row, c, k, polish) result(word)
-      type(hand_row_t), intent(in) :: row
+      type(expected_row_t), intent(in) :: row
       integer, intent(in) :: c, k
       logical, intent(in) :: polish
       character(:), allocatable :: word
@@ -151,7 +151,7 @@ contains
 
    subroutine take(value, row)
       type(jet_t), intent(in) :: value(:)
-      type(hand_row_t), intent(inout) :: row
+      type(expected_row_t), intent(inout) :: row
 
       row%columns = size(value)
       row%value(:size(value), 0) = value%v
@@ -174,7 +174,7 @@ contains
       class(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: b(:)
       integer, intent(in) :: i
-      type(hand_row_t), intent(inout) :: row
+      type(expected_row_t), intent(inout) :: row
       type(place_t) :: p, q
       type(jet_t) :: one(2)
       integer :: k
@@ -235,4 +235,4 @@ contains
          end associate
       end associate
    end function pair_value
-end module hand_rows
+end module expected_rows

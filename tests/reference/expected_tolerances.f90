@@ -1,15 +1,15 @@
 !> Tests. What tolerances do to the rows of the decks tolerances (1), guide_tolerances (2) and landing_gear (3), from
 !> their closed forms in real128 as functions of the numbers that have tolerances: sensitivities are central differences
 !> of these. Numbers, tolerances and units are those of the deck, written out again by hand.
-module hand_tolerances
+module expected_tolerances
    use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic, drive_slide
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, &
       cos, atan2
    use closed_forms_dyads, only: place_t, body_t, flat, origin, base, fixed_place, body, place_on, polar, direction, &
       third_corner, corner, drawn_link
-   use hand_scales, only: listed_t
-   use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: pair_slots
+   use expected_scales, only: listed_t
+   use expected_numbers, only: number_by_hand, field_length
+   use expected_rows, only: pair_slots
    use text_output, only: output_t, put
    implicit none
    private
@@ -382,4 +382,4 @@ contains
       write (text, '(i0)') size(s) - n + 1
       if (n <= size(s)) call put(o, '   '//trim(small_words(m%language))//' '//trim(text))
    end subroutine put_numbers
-end module hand_tolerances
+end module expected_tolerances
