@@ -1,7 +1,8 @@
 #!/bin/sh
 # A deck with all its lengths times a power of ten prints the same digits: every deck of input/, from millionths to
-# millions: by these two powers and one between them, by turns; units.sh all: by six. So do the answers of the cards EXTREMES, RANGE, POLE, CURVE and TOLER, by NEWTON and DENSE, with other units of
-# time as well; in radians they are the same numbers.
+# millions: by these two powers and one between them, by turns; units.sh all: by six. The answers of the cards EXTREMES,
+# RANGE, POLE, CURVE and TOLER, by NEWTON and DENSE, have the same digits with other units of time, too; in radians they
+# are the same numbers.
 . tests/counting.sh
 
 # digits LISTING: its rows of numbers, LINK cards left out, without points, leading zeros and powers of ten.
@@ -101,4 +102,12 @@ for deck in 'four_bar COUPLER CRANK ROCKER C' 'five_bar ROD-L LEFT RIGHT C' 'dix
       done
    done
 done
+# The bounds of PROVE are printed in the characteristic length and rate, with one digit: with other units of time as well.
+awk '/^END/ { print "PROVE"; print; exit } { print }' input/four_bar.deck > "$w/proved.deck"
+bounds() { "$BUILD/kinmat" "$1" | awk '/ PROOF:/ { told = 1 } / INSTANTS PROVED/ { told = 0 } told && $1 ~ /^[0-9]+$/ { print $5, $6, $7 }'; }
+bounds "$w/proved.deck" > "$w/wanted"
+awk -v long=0 -v late=3 -f tests/system/other_units.awk "$w/proved.deck" > "$w/deck"
+bounds "$w/deck" | paste -d ' ' "$w/wanted" - > "$w/out"
+equal 'bounds of proofs, late=3' '117 0' "$(awk '{ for (k = 1; k <= 3; k++) { n++; bad += !($(k + 3) > 0.4*$k && $(k + 3) < 2.5*$k) } }
+   END { print n, bad }' "$w/out")"
 conclude
