@@ -105,8 +105,8 @@ turns() {
    card END
 }
 other="$(card DRIVE ANGLE OTHER '' 5.0)"
-turns 4 1.5 2.0 -90.0 "$other" > "$w/deck"
-equal 'one and a half turns: times and angles' '2 -170;3.5 -305;5 -440;6.5 -575;8 -710;' \
+turns 4 1.5 2.0 -45.0 "$other" > "$w/deck"
+equal 'one and a half turns: times and angles' '2 -80;5 -215;8 -350;11 -485;14 -620;' \
    "$("$kinmat" --no-listing --csv - "$w/deck" | awk -F, '$4 == "LINK" && $5 == "CRANK" { printf "%.12g %.12g;", $3, $8 }')"
 turns 2 0.25 0.0 -90.0 "$other" | sed '/^DRIVE   ANGLE   CRANK/a VARY    R2      LIST            -90.0           45.0            0.0' > "$w/deck"
 equal 'turns of a rate that varies' 'E077' "$("$kinmat" --summary - --no-listing "$w/deck" 2>&1 | grep -o 'E077' | sort -u)"
