@@ -121,7 +121,7 @@ contains
 
    !> Adds the rows of an instant: a line for each table.
    subroutine add_table_line(table, l, motions, rows)
-      type(column_table_t), intent(inout) :: table   !< of the set; get the lines
+      type(column_table_t), intent(inout) :: table   !< of the set; gets the lines
       type(layout_t), intent(in) :: l
       type(set_motion_t), intent(in) :: motions   !< at the instant
       type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
