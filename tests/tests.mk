@@ -190,7 +190,7 @@ tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 
 #: mutants          count faults in the sources that no test sees
 # Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and the parts of mutants.sh not see?
-mutants: $(addprefix $(BUILD)/,kinmat-quad $(addprefix release/,print_expected cylinders_by_chance fuzz_mechanisms lengths_by_chance random_blocks))
+mutants: $(addprefix $(BUILD)/,kinmat-quad kinmat-single $(addprefix release/,print_expected cylinders_by_chance fuzz_mechanisms lengths_by_chance random_blocks))
 	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
 
 #: coverage         count the lines of src/ that tests run

@@ -35,13 +35,14 @@ parts() {
    tests/system/output.sh
    tests/system/together.sh
    tests/system/tolerances.sh
+   tests/study/study_short.sh
    tests/system/units.sh
    tests/system/faults.sh
    tests/system/check.sh
 END
 }
 # What the parts need in addition to the command.
-tools='kinmat-quad release/print_expected release/cylinders_by_chance release/fuzz_mechanisms release/lengths_by_chance release/random_blocks'
+tools='kinmat-quad kinmat-single release/print_expected release/cylinders_by_chance release/fuzz_mechanisms release/lengths_by_chance release/random_blocks'
 unset MAKEFLAGS MFLAGS MAKELEVEL
 place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
