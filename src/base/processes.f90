@@ -1,7 +1,7 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
-   use system_calls, only: notes_all, signal_terminate, last_error
+   use system_calls, only: notes_all, signal_terminate, watch_signals, last_error
    implicit none
    private
    public :: processor_count, fork_process, interrupt_child, end_process
@@ -114,10 +114,12 @@ contains
    integer function fork_process()
       integer(c_int) :: ignored
 
-      fork_process = fork()
-      if (fork_process /= 0) return
-      ignored = prctl(when_parent_ends, signal_terminate)
+      ! The child begins with the handler that records all signals, also if a signal has come before.
       notes_all = .true.
+      call watch_signals
+      fork_process = fork()
+      notes_all = fork_process == 0
+      if (notes_all) ignored = prctl(when_parent_ends, signal_terminate)
    end function fork_process
 
    !> Sends a child SIGTERM, so that the child ends after its instant.

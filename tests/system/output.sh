@@ -202,6 +202,18 @@ for pause in 0 0.02 0.05 0.08; do
    done
 done
 
+# A signal that comes while processes are started: each of them ends by itself.
+for k in $(seq 20); do
+   rm -f stop.lst
+   env --default-signal=INT,TERM "$kinmat" sets --jobs 4 -o stop.lst 2>> started &
+   pid=$!
+   waited=0
+   until [ -s stop.lst ] || [ $waited -ge 100000 ]; do waited=$((waited + 1)); done
+   kill -TERM $pid
+   wait $pid 2> /dev/null
+done
+equal 'SIGTERM while processes are started' '' "$(cat started)"
+
 head -n 12 sets > two
 # A line without an end.
 long_line=' IS NOT A DECK: LINE 1 HAS MORE THAN 10000000 COLUMNS'
