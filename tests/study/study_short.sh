@@ -8,12 +8,11 @@ mkdir "$w/tmp"
 TMPDIR=$w/tmp
 export TMPDIR
 
-# refused NAME STATUS SENTENCE ARGUMENT...: status and sentence of a call that prints no table
-refused() {
+# not_studied NAME STATUS SENTENCE ARGUMENT...: status and last sentence of a call that prints no table
+not_studied() {
    name=$1; status=$2; sentence=$3
    shift 3
-   "$kinmat" "$@" > "$w/out" 2> "$w/err"
-   equal "$name: status" "$status" $?
+   ends "$name" "$status" "$@"
    equal "$name: sentence" "$sentence" "$(tail -n 1 "$w/err")"
    equal "$name: standard output" '' "$(head -n 2 "$w/out")"
 }
@@ -132,19 +131,19 @@ equal 'one instant' '0  NOT STUDIED: ONE INSTANT' "$("$kinmat" --study "$w/one.d
 # What is refused.
 only=' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet'
 deck=$w/four_bar.deck
-refused '--csv' 1 "$only" --study --csv "$w/x.csv" "$deck"
-refused '--log' 1 "$only" --study --log "$w/x.log" "$deck"
-refused '--errors' 1 "$only" --study --errors "$deck"
-refused '--check' 1 "$only" --check --study "$deck"
-refused '--sets' 1 "$only" --study --sets 1/2 "$deck"
-refused '--time' 1 "$only" --study --time "$deck"
-refused '--time and --csv' 1 ' *** OPTION --time CAN ONLY BE COMBINED WITH -o AND --quiet' --time --csv "$w/x.csv" "$deck"
-refused 'no deck' 1 ' *** OPTION --study NEEDS THE DECK AS A FILE' --study
-refused 'its own deck' 1 " *** THE DECK $deck WOULD BE OVERWRITTEN" --study -o "$deck" "$deck"
+not_studied '--csv' 1 "$only" --study --csv "$w/x.csv" "$deck"
+not_studied '--log' 1 "$only" --study --log "$w/x.log" "$deck"
+not_studied '--errors' 1 "$only" --study --errors "$deck"
+not_studied '--check' 1 "$only" --check --study "$deck"
+not_studied '--sets' 1 "$only" --study --sets 1/2 "$deck"
+not_studied '--time' 1 "$only" --study --time "$deck"
+not_studied '--time and --csv' 1 ' *** OPTION --time CAN ONLY BE COMBINED WITH -o AND --quiet' --time --csv "$w/x.csv" "$deck"
+not_studied 'no deck' 1 ' *** OPTION --study NEEDS THE DECK AS A FILE' --study
+not_studied 'its own deck' 1 " *** THE DECK $deck WOULD BE OVERWRITTEN" --study -o "$deck" "$deck"
 sed 's/^END/EMD/' "$deck" > "$w/bad.deck"
-refused 'a bad deck' 1 "$("$kinmat" "$w/bad.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/bad.deck"
+not_studied 'a bad deck' 1 "$("$kinmat" "$w/bad.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/bad.deck"
 sed '/^DRIVE/d' "$deck" > "$w/loose.deck"
-refused 'a loose deck' 1 "$("$kinmat" "$w/loose.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/loose.deck"
+not_studied 'a loose deck' 1 "$("$kinmat" "$w/loose.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/loose.deck"
 # A decimal with the exponent D is the double in every kind, and no other number; a table that ends at that decimal reaches it.
 awk -v t='0.1D0' '/^TIME/ { next } /^AT/ { $0 = sprintf("AT%30s%s", "", t) } { print }' "$deck" > "$w/at_double.deck"
 sed 's/0[.]1D0/0.1/' "$w/at_double.deck" > "$w/at_decimal.deck"

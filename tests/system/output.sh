@@ -185,16 +185,20 @@ rm -f stop[.-]*
 # A signal that comes anywhere, mostly between two sets: the last line says after which, for each number of processes.
 { card GROUND BASE; card LINK CRANK; card JOINT O BASE CRANK; card DRIVE ANGLE CRANK '' 1.0; card TIME 2 '' '' 0.0 1.0; echo END; } > one.deck
 awk -v count=5000 '{ text = text $0 "\n" } END { for (i = 0; i < count; i++) printf "%s", text }' one.deck > sets
+# terminated JOBS PAUSE: SIGTERM comes so many seconds after the first text, which is looked for without a rest
+terminated() {
+   rm -f stop.lst
+   env --default-signal=INT,TERM "$kinmat" sets --jobs "$1" -o stop.lst 2> err &
+   pid=$!
+   waited=0
+   until [ -s stop.lst ] || [ $waited -ge 2000000 ]; do waited=$((waited + 1)); done
+   sleep "$2"
+   kill -TERM $pid
+   wait $pid 2> /dev/null
+}
 for pause in 0 0.02 0.05 0.08; do
    for jobs in 1 2; do
-      rm -f stop.lst
-      env --default-signal=INT,TERM "$kinmat" sets --jobs $jobs -o stop.lst 2> err &
-      pid=$!
-      waited=0
-      until [ -s stop.lst ] || [ $waited -ge 1000 ]; do sleep 0.01; waited=$((waited + 1)); done
-      sleep $pause
-      kill -TERM $pid
-      wait $pid 2> /dev/null
+      terminated $jobs $pause
       told "SIGTERM between sets, $jobs processes, $pause s" 143 $? ''
       equal "SIGTERM between sets, $jobs processes, $pause s: the last line" yes "$(tail -n 1 stop.lst | awk -v set="$(grep -c '^ END OF SET' stop.lst)" \
          '/^ [*][*][*] THE RUN WAS BROKEN OFF AFTER SET [0-9]+$/ && $NF == set { print "yes" }
@@ -203,15 +207,7 @@ for pause in 0 0.02 0.05 0.08; do
 done
 
 # A signal that comes while processes are started: each of them ends by itself.
-for k in $(seq 20); do
-   rm -f stop.lst
-   env --default-signal=INT,TERM "$kinmat" sets --jobs 4 -o stop.lst 2>> started &
-   pid=$!
-   waited=0
-   until [ -s stop.lst ] || [ $waited -ge 100000 ]; do waited=$((waited + 1)); done
-   kill -TERM $pid
-   wait $pid 2> /dev/null
-done
+for k in $(seq 20); do terminated 4 0; cat err; done > started
 equal 'SIGTERM while processes are started' '' "$(cat started)"
 
 head -n 12 sets > two
