@@ -45,30 +45,32 @@ contains
    pure subroutine join_hole(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< the number of the point
+      real(wp) :: here(2)
       integer :: j
 
       if (m%points(i)%hole > 0) return
-      m%points(i)%place = position_on_card(m, i)
+      here = position_on_card(m, i)
       do j = 1, size(m%points)
          if (m%points(j)%link == 0) cycle
          if (body_of(m, j) /= body_of(m, i) .or. .not. is_movable(m, j)) cycle
-         associate (position => position_on_card(m, j), here => m%points(i)%place)
+         associate (position => position_on_card(m, j))
             if (norm2(position - here) > same_place_tolerance*(norm2(position) + norm2(here))) cycle
-            m%points(j)%place = here
-            m%points(j)%hole = i
          end associate
+         m%points(j)%place = merge(here, m%points(j)%offset, m%points(j)%drawn)
+         m%points(j)%hole = i
       end do
    end subroutine join_hole
 
-   !> Finds the position x, y (2) of a point in the drawing, in the deck's unit of length, if no length has moved the
-   !> point.
+   !> Finds the position x, y (2) of a point in the drawing before lengths move it, in the deck's unit of length.
    pure function position_on_card(m, i) result(position)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the point
       real(wp) :: position(2)
 
-      position = m%points(i)%place
-      if (.not. m%points(i)%drawn) position = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
+      associate (point => m%points(i))
+         position = merge(point%place, point%offset, point%drawn .or. point%moves)
+         if (.not. point%drawn) position = point_of(m%links(point%link)%position, position)
+      end associate
    end function position_on_card
 
    !> Computes the axes of each link that begin at FROM and point to TO, with the angle in (-pi, pi]. Then computes xi
@@ -129,7 +131,7 @@ contains
       logical :: is_one
 
       do i = 1, size(m%points)
-         position(:, i) = m%points(i)%place
+         if (m%points(i)%link > 0) position(:, i) = position_on_card(m, i)
       end do
 
       lengths = 0
@@ -139,7 +141,7 @@ contains
          associate (one => m%lengths(k), next => m%lengths(min(k + 1, lengths)))
             is_one = k == lengths .or. next%hole(2) /= one%hole(2)
             reach = reach_t(has_two=.not. is_one)
-            q = m%points(one%point(2))%place
+            q = position_on_card(m, one%point(2))
 
             ! With one length the hole keeps its direction from P.
             if (is_one) then

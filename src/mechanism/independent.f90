@@ -7,7 +7,7 @@ module independent
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
       request_point, request_pair, request_measure, parameter_link, parameter_knot, &
-      parameter_length, parameter_hole
+      parameter_length, parameter_joint, parameter_hole
    use columns, only: kinds_of_rows
    use scales, only: characteristic_length, characteristic_rate
    implicit none
@@ -137,13 +137,12 @@ contains
 
    contains
 
-      !> Adds the ground points of all lengths to every part, if a length has a tolerance: one length moves the points
-      !> of others.
+      !> Adds the ground points of all lengths to every part, if numbers have tolerances: one length moves the points of
+      !> others.
       subroutine add_lengths()
          integer :: i, k
 
          if (.not. (allocated(m%lengths) .and. allocated(m%tolerances))) return
-         if (.not. any(m%tolerances%kind == parameter_length)) return
          do i = 1, size(m%lengths)
             if (.not. m%links(m%points(m%lengths(i)%point(1))%link)%ground) cycle
             used = [used, (m%lengths(i)%point, k=1, set%count)]
@@ -305,7 +304,11 @@ contains
                else if (one%kind == parameter_hole) then
                   one%subject = findloc(own%points%hole, m%points(one%subject)%hole, dim=1)
                else
-                  one%subject = new_number(of_numbers(one%kind))%of(one%subject)
+                  associate (number => new_number(of_numbers(one%kind))%of)
+                     ! A part may have one point of a joint alone, that on the ground.
+                     if (one%kind == parameter_joint .and. number(one%subject) == 0) one%subject = one%subject + 1
+                     one%subject = number(one%subject)
+                  end associate
                end if
             end associate
          end do

@@ -135,7 +135,8 @@ module mechanism
       integer :: link = 0                    !< the number of its link
       real(wp) :: offset(2) = 0.0_wp         !< xi, eta in the axes of the link
       logical :: drawn = .false.             !< one of two points of a JOINT card, drawn at one position
-      real(wp) :: place(2) = 0.0_wp          !< of a JOINT or a hole: its position in the drawing before lengths move it
+      !> Where it is before lengths move it: of a JOINT x, y in the drawing, of another point of a hole xi, eta.
+      real(wp) :: place(2) = 0.0_wp
       integer :: hole = 0                    !< a number that all points of one hole share; 0: not sought
       logical :: moves = .false.             !< lengths have moved it
    end type point_t

@@ -242,16 +242,18 @@ contains
       type(mechanism_t), intent(inout) :: m  !< with its links at the positions of the cards
       type(parameter_t), intent(in) :: number   !< its address
       real(wp), intent(in) :: value          !< in the units of `mechanism_t`
-      type(mechanism_t), allocatable :: before
+      logical :: again
 
-      if (allocated(m%lengths)) before = m
       call set_parameter(m, number, value)
       ! As in a drawing with other coordinates, lengths and axes along bars are applied again.
-      if (number%kind == parameter_length .or. number%kind == parameter_joint .and. &
-         (allocated(m%lengths) .or. any(m%links%from > 0))) call apply_lengths(m)
+      again = allocated(m%lengths) .and. (number%kind <= parameter_joint .or. number%kind == parameter_length) &
+         .or. number%kind == parameter_joint .and. any(m%links%from > 0)
+      ! A point that lengths have moved is off from where it is now.
+      if (number%kind == parameter_point) again = again .and. .not. m%points(number%subject)%moves
+      if (again) call apply_lengths(m)
       if (any(number%kind == [parameter_drive, parameter_knot])) call set_table(m%drives(number%subject), number%term)
       if (number%kind > parameter_pair) return
-      call follow_drawing(m, before)
+      call follow_drawing(m)
       ! The number itself may have been as drawn.
       if (number%kind == parameter_pair) call set_parameter(m, number, value)
    end subroutine change_parameter
@@ -274,11 +276,15 @@ contains
       end if
       way = 0.0_wp
       way(number%place) = value - parameter_value(m, number)
-      do i = number%subject, number%subject + merge(1, 0, number%kind == parameter_joint)
+      do i = number%subject, min(size(m%points), number%subject + merge(1, 0, number%kind == parameter_joint))
+         ! A part of a divided set may have one point of a joint alone.
+         if (m%points(i)%name /= m%points(number%subject)%name) cycle
          do j = 1, size(m%points)
             if (j /= i .and. (m%points(j)%hole == 0 .or. m%points(j)%hole /= m%points(i)%hole)) cycle
-            m%points(j)%offset = m%points(j)%offset + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
-            if (number%kind == parameter_joint) m%points(j)%place = m%points(j)%place + way
+            associate (point => m%points(j), own => rotated(way, direction(-m%links(m%points(j)%link)%position(3))))
+               point%offset = point%offset + own
+               if (number%kind == parameter_joint) point%place = point%place + merge(way, own, point%drawn)
+            end associate
          end do
       end do
    end subroutine set_parameter
@@ -311,29 +317,24 @@ contains
       if (i > 0) minute_in = minutes(i)
    end function minute_in
 
-   !> Changes all numbers that are as drawn to the values of the drawing. If the mechanism has lengths, these have moved
-   !> points after the numbers were read from the drawing. Then the numbers change by as much as the drawing has changed
-   !> since `before`.
-   pure recursive subroutine follow_drawing(m, before)
+   !> Changes all numbers that are as drawn to the values of the drawing, as it is before lengths move its points.
+   pure subroutine follow_drawing(m)
       type(mechanism_t), intent(inout) :: m
-      type(mechanism_t), allocatable, intent(in) :: before   !< the earlier mechanism; without lengths not allocated
-      type(mechanism_t), allocatable :: drawn_before, none
+      type(mechanism_t), allocatable :: drawing
       integer :: i
 
+      drawing = m
+      if (allocated(m%lengths)) then
+         deallocate (drawing%lengths)
+         call apply_lengths(drawing)
+      end if
       do i = 1, size(m%pairs)
-         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call complete_from_drawing(m, i)
+         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call complete_from_drawing(drawing, i)
       end do
+      m%pairs = drawing%pairs
       do i = 1, size(m%drives)
-         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
+         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(drawing, drawing%drives(i))
       end do
-      if (.not. allocated(before)) return
-      drawn_before = before
-      call follow_drawing(drawn_before, none)
-      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - drawn_before%pairs%alpha)
-      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - drawn_before%pairs%offset)
-      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - drawn_before%pairs%beta)
-      where (m%drives%drawn) m%drives%polynomial(1) = before%drives%polynomial(1) &
-         + (m%drives%polynomial(1) - drawn_before%drives%polynomial(1))
    end subroutine follow_drawing
 
    !> Tells whether the drawing gives the value of a number: the number is blank on its card, in a deck with JOINT

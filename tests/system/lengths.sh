@@ -140,6 +140,45 @@ equal 'a length moves the ground joint of another mechanism' '0.040000 0.000000'
 run both
 equal 'both holes and lengths' 0.14323945 "$(awk -F, '$4 == "LINK RSS" { printf "%.8f", $8 }' "$w/both.csv")"
 
+# TOLER is the difference of decks with other numbers: of drawn directions that lengths turn, of the points and ground links from
+# which they are counted, in two mechanisms.
+# typed CARD K NUMBER TOLER: the deck on standard input with number K of a card, and a TOLER card below it, unless that is blank
+typed() { awk -v card="$1" -v k="$2" -v number="$3" -v toler="$4" 'index($0, card) == 1 {
+   $0 = sprintf("%-80s", $0); print substr($0, 1, 16 + 16*k) sprintf("%-16s", number) substr($0, 33 + 16*k); if (toler != "") print toler; next } 1'; }
+# differences NAME CARD K NUMBER LINK: how many numbers of rows of $w/typed.deck have other sensitivities than differences of decks
+differences() {
+   for change in -0.001 0.001 0.0; do
+      toler=
+      [ $change != 0.0 ] || toler=$(printf "TOLER   %-24s%*s1.0E-5" "$5" $((16*$3 - 16)) '')
+      typed "$2" "$3" "$(awk -v x="$4" -v d=$change 'BEGIN { printf "%.6f", x + d }')" "$toler" < "$w/typed.deck" > "$w/changed.deck"
+      "$kinmat" "$w/changed.deck" --no-listing --csv - 2> "$w/err" | awk -F, -v change=$change '$4 ~ /^(LINK|POINT)( RSS)?$/ {
+         for (k = 6; k <= 14; k++) if ($k != "") print change, $4, $5, k, $k }'
+   done | sed 's/ RSS/-RSS/' > "$w/rows"
+   equal "$1: sensitivities by differences" '0 wrong' "$(awk '{ value[$1 " " $2 " " $3 " " $4] = $5 } $2 ~ /-RSS/ { list[++n] = $3 " " $4; sub(/-RSS/, "", $2); kind[n] = $2 }
+      END { for (i = 1; i <= n; i++) { s = value["0.0 " kind[i] "-RSS " list[i]]/1e-5
+         d = (value["0.001 " kind[i] " " list[i]] - value["-0.001 " kind[i] " " list[i]])/0.002; if (d < 0) d = -d
+         if (s - d > 1e-4*(1 + d) || d - s > 1e-4*(1 + d)) wrong++ }
+         print (n > 0 ? wrong + 0 : "no") " wrong" }' "$w/rows")"
+}
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$(card DRIVE ANGLE PLATE '' '' 10.0)" \
+   "$(card AT '' '' '' 0.0)" "$(card PRINT LINKS)" | sed 's/^\(LINK    PLATE *A *\)B/\1C/' | made typed
+for number in 'A 1 20.0' 'A 2 20.0' 'B 1 80.0' 'C 1 30.0' 'B0 1 90.0'; do
+   set -- $number
+   differences "joint $1" "JOINT   $1 " $2 $3 BOTH
+done
+{ card UNITS MM DEG S; card GROUND BASE; card GROUND SOIL '' '' 0.5 -0.2 10.0; card LINK FIRST; card LINK SECOND; card LINK THIRD
+   card POINT P SOIL '' -0.4 0.1; card POINT R SOIL '' 2.5 0.3; card POINT M SOIL '' 1.0 -3.0; card POINT N SOIL '' 2.4 -2.5
+   card JOINT Q1 BASE FIRST 0.0 4.0; card JOINT Q2 BASE SECOND 3.0 4.0; card POINT E SECOND '' 4.0 4.0; card POINT N1 THIRD
+   card POINT T THIRD '' 2.0 1.0; card REVOLUTE N N1 PN
+   card LENGTH P Q1 '' 4.0; card LENGTH R Q1 '' 5.0; card LENGTH Q1 Q2 '' 3.0; card LENGTH R Q2 '' 4.0; card LENGTH M N '' 2.0
+   for link in FIRST SECOND THIRD; do card DRIVE ANGLE $link '' 0.0 20.0; done; card AT '' '' '' 1.0; card PRINT POINTS; card END
+} > "$w/typed.deck"
+for number in 'POINT:R 1 2.5' 'POINT:P 2 0.1' 'POINT:M 1 1.0' 'GROUND:SOIL 1 0.5' 'GROUND:SOIL 3 10.0'; do
+   set -- $number
+   differences "$1" "$(card "${1%:*}" "${1#*:}") " $2 $3
+done
+for joint in 'Q1 0.0' 'Q2 3.0'; do set -- $joint; differences "joint $1 of two mechanisms" "JOINT   $1 " 1 $2 BOTH; done
+
 # What is rejected.
 # error NAME WORDS: as `refused`, of the cards on standard input
 error() { { card UNITS MM DEG S; cat; card END; } | refused "$@"; }
