@@ -90,7 +90,8 @@ contains
       end associate
    end subroutine make_form
 
-   !> Adds the linear equation of a loop of angles, w = exp(i phi) w_less, or of a slide, z = s w. If both angles are in
+   !> Adds the linear equation of a loop of angles, w = exp(i phi) w_less, or of a slide, z = s w. Column 0 is the angle
+   !> of the ground: with an angle of an earlier block the equation would be a block of its own. If both angles are in
    !> one column, there is no equation.
    pure subroutine add_angles(b, x, i, loop, s, form, builder)
       type(blocks_t), intent(in) :: b
@@ -106,15 +107,14 @@ contains
       associate (g => b%loops(loop))
          if (g%orientation_column == g%less_column) return
          builder%linear = builder%linear + 1
+         less = g%less_column
+         ratio = given(b, x, i, g%row_x, s)
          if (g%orientation <= b%orientations) then
-            less = g%less_column
-            ratio = exp(i_unit*given(b, x, i, g%row_x, s))*direction_factor(less, g%less, s)
-            builder%a(g%orientation_column, builder%linear) = direction_factor(g%orientation_column, g%orientation, s)
+            ratio = exp(i_unit*ratio)
          else
             less = form%turns(g%orientation_column)
-            ratio = given(b, x, i, g%row_x, s) + s%u(g%less)%value
-            builder%a(g%orientation_column, builder%linear) = 1.0_wp
          end if
+         builder%a(g%orientation_column, builder%linear) = 1.0_wp
          builder%a(less, builder%linear) = builder%a(less, builder%linear) - ratio
       end associate
    end subroutine add_angles
