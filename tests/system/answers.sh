@@ -51,6 +51,9 @@ equal 'dixon, METHOD DENSE' 'E104' "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/^ [*]
 with scott_russell_at "$(card EXTREMES LINKS BAR)" > "$w/deck"
 equal 'instants on change points' ' --- EXTREMES MAY BE MISSED WITHIN T = 4.99609 .. 5.00391, 19.99609 .. 20.00391 S
  --- NOT SEARCHED (MOTION NOT AVAILABLE): T = 5.00000, 20.00000 S' "$("$kinmat" "$w/deck" | grep 'MISSED\|NOT SEARCHED')"
+with scott_russell_at "$(card EXTREMES LINKS BAR)" | sed "s/^TIME .*/$(card TIME 18 '' '' 0.0 90.0)/" > "$w/deck"
+equal 'instants on change points, three turns' ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T = 5.00000, 20.00000, 35.00000, 50.00000 S AND 2 MORE' \
+   "$("$kinmat" "$w/deck" | grep 'NOT SEARCHED')"
 
 # A whole turn in one step of TIME: it is halved, and the table is the same; backwards the strokes change places.
 sed "s/^TIME .*/$(card TIME 1 '' '' 0.0 12.0)/" input/stroke.deck > "$w/deck"

@@ -284,4 +284,16 @@ held -0.433629385641 0.716814692820 > "$w/deck"
 nearest=$(at_rest)
 held -13.0 7.0 > "$w/deck"
 equal 'whole turns of two drives on one link, the other way round' "$nearest" "$(at_rest)"
+# A parallelogram with a third crank at 40 deg. Redundant drives hold both other cranks beside the first; one is off by
+# 1E-9 deg, which is rounding of the deck: there is one assembly.
+{ card UNITS M DEG S; card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 40.0; card LINK COUPLER '' '' 1.5 1.3
+   card LINK MIDDLE '' '' 2.0 0.0 43.0; card LINK ROCKER '' '' 4.0 0.0 45.0
+   for x in 0.0 2.0 4.0; do card POINT "A$x" BASE '' "$x"; card POINT "B$x" COUPLER '' "$x"; done
+   for link in 'CRANK 0.0' 'MIDDLE 2.0' 'ROCKER 4.0'; do
+      set -- $link
+      card POINT "C$2" "$1"; card POINT "D$2" "$1" '' 2.0; card REVOLUTE "A$2" "C$2" "P$2"; card REVOLUTE "B$2" "D$2" "Q$2"
+   done
+   card DRIVE ANGLE CRANK '' 40.0; card DRIVE RELANGLE CRANK MIDDLE; card DRIVE RELANGLE CRANK ROCKER 1.0E-9
+   card AT '' '' '' 0.0; card ASSEMBLY; card END; } > "$w/deck"
+equal 'redundant drives that are rounded' 'REAL 1' "$(assemblies "$w/deck" | sed -n 's/.* \(REAL [0-9]*\).*/\1/p')"
 conclude

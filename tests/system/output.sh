@@ -161,7 +161,8 @@ for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debu
    told "SIG$1, $3" "$2" $status ''
    case $3 in polish) words='OBLICZENIA PRZERWANO PO CHWILI' ;; *) words='THE RUN WAS BROKEN OFF AFTER INSTANT' ;; esac
    last=$(tail -n 1 stop.log | awk '{ print $1 }')
-   equal "SIG$1, $3: last line of the listing" " *** $words $last" "$(tail -n 1 stop.lst)"
+   equal "SIG$1, $3: last lines of the listing" "
+ *** $words $last" "$(tail -n 2 stop.lst)"
    equal "SIG$1, $3: the last instant of the CSV" "1,$last" "$(tail -n 1 stop.csv | cut -d, -f1,2)"
    equal "SIG$1, $3: the last row of the table" "$(tail -n 1 stop.csv | cut -d, -f3)" "$(tail -n 1 stop-1.table | cut -d, -f1)"
    equal "SIG$1, $3: rows of the table" '' "$(awk -F, 'NR == 1 { n = NF } NF != n' stop-1.table | head -n 2)"
