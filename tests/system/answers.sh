@@ -55,6 +55,11 @@ with scott_russell_at "$(card EXTREMES LINKS BAR)" | sed "s/^TIME .*/$(card TIME
 equal 'instants on change points, three turns' ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T = 5.00000, 20.00000, 35.00000, 50.00000 S AND 2 MORE' \
    "$("$kinmat" "$w/deck" | grep 'NOT SEARCHED')"
 
+# From an antiparallelogram to a parallelogram, whose coupler does not turn: least and greatest rate are limits at the change point.
+with antiparallelogram_branch "$(card EXTREMES LINKS COUPLER)" > "$w/deck"
+equal 'the times of limits' '27.60000 360.000000 27.60000 360.000000' "$("$kinmat" "$w/deck" | awk '/^ EXTREMES  / { on = 1 }
+   on && /^  AT T/ { t = $8 } on && /^ AT DRIVE/ { text = text s t " " $8; s = " " } END { print text }')"
+
 # A whole turn in one step of TIME: it is halved, and the table is the same; backwards the strokes change places.
 sed "s/^TIME .*/$(card TIME 1 '' '' 0.0 12.0)/" input/stroke.deck > "$w/deck"
 "$kinmat" "$w/deck" > "$w/listing" 2>&1
@@ -113,6 +118,15 @@ grep -v '^EXTREMES' input/stroke.deck > "$w/without.deck"
 "$kinmat" --csv "$w/listed.csv" "$w/stroke.deck" > /dev/null
 same 'the CSV with and without EXTREMES' "$w/without.csv" "$w/with.csv"
 same 'the CSV with and without the search' "$w/without.csv" "$w/listed.csv"
+
+# At another time than 0 all drives are held where they are then: the same with their values typed.
+ranges() { { cat; card RANGE; card END; } | "$kinmat" 2>&1 | sed -n '/^ RANGES/,/^ CONTINUATION/p'; }
+sed -e '/^END/,$d' -e "s/^TIME .*/$(card AT '' '' '' 0.5)/" input/three_rrr.deck | ranges > "$w/moving"
+sed -e '/^END/,$d' -e "s/^TIME .*/$(card AT '' '' '' 0.5)/" -e '/^ADD/d' input/three_rrr.deck | awk '
+   /^DRIVE   X / { value = 5 + 0.8*sin(0.5) } /^DRIVE   Y / { value = 3 + 0.6*sin(1.5) } /^DRIVE   ANGLE / { value = 0.1 + 0.25*sin(0.75) }
+   /^DRIVE/ { printf "%-32s%.11f\n", substr($0, 1, 24), value; next } 1' | ranges > "$w/typed"
+same 'drives that are held at another time than 0' "$w/typed" "$w/moving"
+equal 'drives that are held at another time than 0: ends' 6 "$(grep -cE '^   M(IN|AX) ' "$w/typed")"
 
 # Closer than rounding can tell, 1E-10: the ends to 1E-5 degrees, with the reason, which a run to there gives as well.
 still_four_bar 3.0 1.1 2.6499999999 0.75 CRANK 50.0 -35.8 38.6 50.0 RANGE > "$w/deck"

@@ -893,6 +893,7 @@ drives 'a turn in a step' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK ''
 drives 'nearly a turn in a step' '' "$(drive ANGLE CRANK '' 60.0 -359.9)" "$run"
 drives 'back two turns in a step' "DRIVE ANGLE CRANK $fast 2.00" "$(drive ANGLE CRANK '' 60.0 -720.0)" "$run"
 drives 'turns a minute' "DRIVE ANGLE CRANK $fast 1.25" "$(drive ANGLE CRANK RPM 60.0 75.0)" "$run"
+drives 'two fast drives: the first' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK '' 60.0 360.0; drive ANGLE ROD '' 0.0 720.0)" "$run"
 drives 'a rise of a turn in two steps' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK '' 60.0; card RISE CYCLOID '' '' 4.0 2.0 360.2)" "$run"
 drives 'rises one after another' '' "$(drive ANGLE CRANK '' 60.0; for k in 0 3 6 9; do card RISE CYCLOID '' '' $k.0 3.0 500.0; done)" "$run"
 drives 'a harmonic' "DRIVE ANGLE CRANK $fast $(small '200*6/360' .2f)" "$(drive ANGLE CRANK '' 60.0; card ADD HARMONIC '' '' 200.0 343.77467707849)" "$run"

@@ -229,4 +229,12 @@ meeting 4 | sed 's/^END/DISTANCEP       Q       PQ\nEND/' |
 with transmission "$(card SUM MU '' S1 1.0 '' 3.0; card SUM MU MU S2; card SUM S1 S2 S3 2.0 -1.0)" > "$w/deck"
 "$kinmat" --no-listing --csv "$w/csv" "$w/deck"
 equal 'a sum of sums' 13 "$(measured "$w/csv" | awk '$2 == "S3" && ($3 - 6)^2 < 1e-20 && $4^2 < 1e-20' | wc -l | tr -d ' ')"
+# The line through two points that nearly meet has lost digits: those that are printed are right. P and Q are on cranks with 1E-7 deg
+# between them.
+{ card UNITS M DEG S; card GROUND BASE; card LINK LEFT; card LINK RIGHT; card POINT O BASE; card POINT O1 LEFT; card POINT O2 RIGHT
+   card POINT P LEFT '' 1.0; card POINT Q RIGHT '' 1.0; card REVOLUTE O O1 P1; card REVOLUTE O O2 P2; card DRIVE ANGLE LEFT '' 30.0 20.0
+   card DRIVE RELANGLE LEFT RIGHT 1.0E-7; card LINE P Q PQ; card TIME 2 '' '' 0.0 2.0; card PRINT MEASURES; card END; } > "$w/deck"
+equal 'a line through points that nearly meet' '120.00 140.00 160.00' "$("$kinmat" "$w/deck" | awk '/^ PQ / {
+   angle = $2; sub(/[?].*/, "", angle); if (index(100 + 20*++n ".000000", angle) != 1) print $0
+   printf "%s%s", s, substr(angle, 1, 6); s = " " } END { print "" }')"
 conclude

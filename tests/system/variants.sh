@@ -232,6 +232,10 @@ for k in 1 2 3 4 5 6 7 8; do
 done > "$w/joined.csv"
 same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
 
+# Units stand below the heads of ranges as well: the drive is an angle.
+with crank_rockers "$(card RANGE)" > "$w/ranges.deck"
+equal 'ranges of variants: units' 'M M M S DEG DEG' "$("$kinmat" "$w/ranges.deck" | awk '/RANGE MIN/ { getline; $1 = $1; print; exit }')"
+
 # More variants in all sets than a whole number counts: 215 sets of 3162**2.
 moving_four_bar "$(vary R1 3162 '' 0.5 1.25)" "$(vary R1 3162 '' 3.25 3.75)" '' '' "$(card AT '' '' '' 0.0)" > "$w/grid.deck"
 for i in $(seq 215); do cat "$w/grid.deck"; done > "$w/grids.deck"
