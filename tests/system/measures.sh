@@ -222,9 +222,12 @@ bad 'E052 CARD 35 COLUMN 9 FIELD LABEL-A: "CRANK" IS NOT THE NAME OF A POINT (A 
    "$(card XI CRANK ROCKER X)"
 bad 'E071 CARD 38 COLUMN 17 FIELD LABEL-B: "X" IS GROUND: NAME WHAT MOVES' \
    "$(card DISTANCE G1 G2 X; card POINT G1 BASE; card POINT G2 BASE '' 1.0; card EXTREMES MEASURES X)"
-meeting 4 | sed 's/^END/DISTANCEP       Q       PQ\nEND/' |
-   refused 'a distance between mechanisms' \
-      'E107 CARD 34 COLUMN 17 FIELD LABEL-B: "Q" IS IN ANOTHER INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD'
+for place in 'END 34' 'TITLE 14'; do
+   set -- $place
+   meeting 4 | sed "s/^$1/DISTANCEP       Q       PQ\n&/" |
+      refused "a distance between mechanisms, before $1" \
+         "E107 CARD $2 COLUMN 17 FIELD LABEL-B: \"Q\" IS IN ANOTHER INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD"
+done
 # A sum of sums is the sum of their terms: 2 (MU + 3 DEG) - (MU + MU) = 6 DEG.
 with transmission "$(card SUM MU '' S1 1.0 '' 3.0; card SUM MU MU S2; card SUM S1 S2 S3 2.0 -1.0)" > "$w/deck"
 "$kinmat" --no-listing --csv "$w/csv" "$w/deck"
