@@ -232,6 +232,14 @@ for k in 1 2 3 4 5 6 7 8; do
 done > "$w/joined.csv"
 same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
 
+# Guides that vary: variants that are solved together have the numbers of variants that are solved one by one, for their log.
+awk '/^END/ { print; exit } 1' input/crank_slider.deck | sed -e '/^PRINT/d' -e '/^EXTREMES/d' -e "s/^PRISM.*/&\n$(card VARY R1 3 '' -2.0 2.0)\n$(card VARY R2 8 '' -0.3 0.3)/" \
+   -e "s/^END/$(card EXTREMES PAIRS BORE)\nEND/" > "$w/guides.deck"
+"$kinmat" "$w/guides.deck" --jobs 1 --no-listing --summary "$w/together.csv"
+"$kinmat" "$w/guides.deck" --jobs 1 --no-listing --summary "$w/alone.csv" --log "$w/alone.log"
+same 'guides that vary, together' "$w/alone.csv" "$w/together.csv"
+equal 'guides that vary: other strokes' 24 "$(sed 1d "$w/alone.csv" | cut -d, -f13,16 | sort -u | wc -l | tr -d ' ')"
+
 # Units stand below the heads of ranges as well: the drive is an angle.
 with crank_rockers "$(card RANGE)" > "$w/ranges.deck"
 equal 'ranges of variants: units' 'M M M S DEG DEG' "$("$kinmat" "$w/ranges.deck" | awk '/RANGE MIN/ { getline; $1 = $1; print; exit }')"
