@@ -186,7 +186,7 @@ static int calls(const char *path, const char *rejected) {
       kinmat_column(k, 0) ? "?" : "none", kinmat_instants(k, t, 3), kinmat_advance(k, 0.0, row));
    kinmat_free(k);
    k = kinmat_read(NULL, 1, &status);
-   printf("null: %d\n", status);
+   printf("null: %d '%s'\n", status, kinmat_message(k));
    kinmat_free(k);
    kinmat_free(NULL);
    printf("null: '%s' columns %d, advance %d\n", kinmat_message(NULL), kinmat_columns(NULL), kinmat_advance(NULL, 0.0, row));

@@ -55,7 +55,7 @@ again 0 as before
 set -1: 1 'THE DECK HAS NO SET OF THIS NUMBER'
 set 2: 0 ''
 rejected: columns 0, column none, instants 0, advance 1
-null: 1
+null: 1 ' *** E001  THE DECK IS EMPTY'
 null: 'NOT ENOUGH MEMORY' columns 0, advance 1
 END
 same 'calls with a fault' "$w/expected" "$w/found"
