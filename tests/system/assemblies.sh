@@ -284,6 +284,17 @@ held -0.433629385641 0.716814692820 > "$w/deck"
 nearest=$(at_rest)
 held -13.0 7.0 > "$w/deck"
 equal 'whole turns of two drives on one link, the other way round' "$nearest" "$(at_rest)"
+# Without angles the estimate leads to another assembly than the nearest, which is taken; also if the first link moves.
+awk '/^END/ { print "ASSEMBLY"; print; exit } /^LINK/ { $0 = substr($0, 1, 64) } /^TIME/ { $0 = sprintf("%-32s%s", "AT", "0.0") } 1' \
+   input/yoke_mirrored.deck > "$w/ground_first.deck"
+awk '/^GROUND/ { links = $0; next } /^LINK/ { links = $0 "\n" links; next } /^POINT/ && links != "" { print links; links = "" } 1' \
+   "$w/ground_first.deck" > "$w/ground_later.deck"
+for order in first later; do
+   "$kinmat" "$w/ground_$order.deck" --no-listing --csv - | grep ',LINK,' | sort > "$w/ground_$order"
+done
+equal 'no angles: the rod of the nearest assembly' "$(awk 'BEGIN { s = (5 - 8/sqrt(5))/2; printf "%.6f", atan2(s, sqrt(1 - s*s))*180/atan2(0, -1) }')" \
+   "$(awk -F, '$5 == "ROD" { printf "%.6f", $8 }' "$w/ground_first")"
+same 'no angles: links in another order, the ground behind them' "$w/ground_first" "$w/ground_later"
 # A parallelogram with a third crank at 40 deg. Redundant drives hold both other cranks beside the first; one is off by
 # 1E-9 deg, which is rounding of the deck: there is one assembly.
 { card UNITS M DEG S; card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 40.0; card LINK COUPLER '' '' 1.5 1.3
