@@ -179,6 +179,15 @@ for number in 'POINT:R 1 2.5' 'POINT:P 2 0.1' 'POINT:M 1 1.0' 'GROUND:SOIL 1 0.5
 done
 for joint in 'Q1 0.0' 'Q2 3.0'; do set -- $joint; differences "joint $1 of two mechanisms" "JOINT   $1 " 1 $2 BOTH; done
 
+# Six-bars made by chance, the coupler's axes towards a joint that two lengths place, driven from where it is drawn.
+for k in 1 2 3 4 5; do
+   awk -v k=$k 'BEGIN { n = 1 } n == k; /^END/ { n++ }' "$w/chance.deck" | sed -e '/^TOLER/d' -e '/^PRINT   POINTS/d' \
+      -e 's/^\(LINK    COUPLER\).*/\1 A       C/' -e "s/^DRIVE.*/$(card DRIVE ANGLE COUPLER '' '' 1.0)/" -e "s/^AT .*/$(card AT '' '' '' 0.0)/" > "$w/typed.deck"
+   for joint in A B C; do
+      differences "drawn by chance $k, joint $joint" "JOINT   $joint " 1 "$(awk -v name=$joint '$1 == "JOINT" && $2 == name { print substr($0, 33, 16) + 0 }' "$w/typed.deck")" BOTH
+   done
+done
+
 # What is rejected.
 # error NAME WORDS: as `refused`, of the cards on standard input
 error() { { card UNITS MM DEG S; cat; card END; } | refused "$@"; }
