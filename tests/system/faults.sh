@@ -466,6 +466,12 @@ equal 'a change point without a card: the rocker' 220.000000000 "$(last_angle RO
 crossing card BRANCH ROCK '' '' 16.0 > "$w/deck"
 told 'a change point with its card' 0 "4: --- $at16: PASSED TO THE OTHER BRANCH (CARD BRANCH)"
 equal 'a change point with its card: the rocker' "$crossed" "$(last_angle ROCK)"
+# The listing has six digits of the time: a card may be 1E-5 of it late, at T = 1600 by 0.016.
+for late in '1600.01 1' '1600.025 0'; do
+   set -- $late
+   crossing card BRANCH ROCK '' '' $1 | sed -e "s/^DRIVE .*/$(drive ANGLE CRANK '' -15820.0 10.0)/" -e "s/^TIME .*/$(card TIME 4 '' '' 1584.0 1604.0)/" > "$w/deck"
+   equal "a card from T = $1" $2 "$("$kinmat" "$w/deck" 2>&1 | grep -c 'PASSED TO THE OTHER BRANCH')"
+done
 crossing card BRANCH CRANK '' '' 1.0 > "$w/deck"
 told 'a card for a link that passes none' 0 "4: --- $at16: PASSED ON THE SMOOTH BRANCH
 4: *** BRANCH CRANK FROM T = 1.00000 S: NO CHANGE POINT WAS PASSED"
