@@ -304,11 +304,10 @@ contains
                else if (one%kind == parameter_hole) then
                   one%subject = findloc(own%points%hole, m%points(one%subject)%hole, dim=1)
                else
-                  associate (number => new_number(of_numbers(one%kind))%of)
-                     ! A part may have one point of a joint alone, that on the ground.
-                     if (one%kind == parameter_joint .and. number(one%subject) == 0) one%subject = one%subject + 1
-                     one%subject = number(one%subject)
-                  end associate
+                  ! A part may have one point of a joint alone, that on the ground.
+                  if (one%kind == parameter_joint .and. new_number(request_point)%of(one%subject) == 0) &
+                     one%subject = one%subject + 1
+                  one%subject = new_number(of_numbers(one%kind))%of(one%subject)
                end if
             end associate
          end do

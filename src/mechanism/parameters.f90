@@ -323,6 +323,7 @@ contains
       type(mechanism_t), allocatable :: drawing
       integer :: i
 
+      if (.not. (any(m%drives%drawn) .or. any(m%pairs%drawn(1) .or. m%pairs%drawn(2) .or. m%pairs%drawn(3)))) return
       drawing = m
       if (allocated(m%lengths)) then
          deallocate (drawing%lengths)
