@@ -295,6 +295,11 @@ done
 equal 'no angles: the rod of the nearest assembly' "$(awk 'BEGIN { s = (5 - 8/sqrt(5))/2; printf "%.6f", atan2(s, sqrt(1 - s*s))*180/atan2(0, -1) }')" \
    "$(awk -F, '$5 == "ROD" { printf "%.6f", $8 }' "$w/ground_first")"
 same 'no angles: links in another order, the ground behind them' "$w/ground_first" "$w/ground_later"
+# A number that fills its columns stands on a * card: -10.0 with 12 decimals would touch the number before it.
+{ card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK COUPLER; card LINK ROCKER; card JOINT A0 BASE CRANK 0.0 -9.9999999999996
+   card JOINT A CRANK COUPLER 1.0 -9.0; card JOINT B COUPLER ROCKER 3.0 -7.0; card JOINT B0 ROCKER BASE 4.0 -9.0
+   card DRIVE ANGLE CRANK '' '' 1.0; card AT '' '' '' 0.0; card ASSEMBLY; card END; } > "$w/deck"
+equal 'a number that fills its columns' '* 0.000000000000 -10.000000000000' "$(assemblies "$w/deck" | awk '/^JOINT   A0 / { getline; $1 = $1; print; exit }')"
 # A parallelogram with a third crank at 40 deg. Redundant drives hold both other cranks beside the first; one is off by
 # 1E-9 deg, which is rounding of the deck: there is one assembly.
 { card UNITS M DEG S; card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 40.0; card LINK COUPLER '' '' 1.5 1.3
