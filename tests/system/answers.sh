@@ -121,10 +121,11 @@ same 'the CSV with and without the search' "$w/without.csv" "$w/listed.csv"
 
 # At another time than 0 all drives are held where they are then: the same with their values typed.
 ranges() { { cat; card RANGE; card END; } | "$kinmat" 2>&1 | sed -n '/^ RANGES/,/^ CONTINUATION/p'; }
-sed -e '/^END/,$d' -e "s/^TIME .*/$(card AT '' '' '' 0.5)/" input/three_rrr.deck | ranges > "$w/moving"
-sed -e '/^END/,$d' -e "s/^TIME .*/$(card AT '' '' '' 0.5)/" -e '/^ADD/d' input/three_rrr.deck | awk '
+sed -e '/^END/,$d' -e "s/^TIME .*/$(card AT '' '' '' 0.5)/" input/three_rrr.deck > "$w/cards_at"
+ranges < "$w/cards_at" > "$w/moving"
+awk '/^ADD/ { next }
    /^DRIVE   X / { value = 5 + 0.8*sin(0.5) } /^DRIVE   Y / { value = 3 + 0.6*sin(1.5) } /^DRIVE   ANGLE / { value = 0.1 + 0.25*sin(0.75) }
-   /^DRIVE/ { printf "%-32s%.11f\n", substr($0, 1, 24), value; next } 1' | ranges > "$w/typed"
+   /^DRIVE/ { printf "%-32s%.11f\n", substr($0, 1, 24), value; next } 1' "$w/cards_at" | ranges > "$w/typed"
 same 'drives that are held at another time than 0' "$w/typed" "$w/moving"
 equal 'drives that are held at another time than 0: ends' 6 "$(grep -cE '^   M(IN|AX) ' "$w/typed")"
 

@@ -176,6 +176,8 @@ through '' "$(card DRIVE SLIDE CYL '' -0.5 0.1)" "$(card AT '' '' '' 0.0)" | ref
 boom '' '' "$(card DRIVE ANGLE BARREL '' 180.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'only lengths below 0' ' *** NO POSITION FOUND
  *** CYLINDER RAM: ONLY LENGTHS BELOW 0, FOR A SLIDE THROUGH 0 USE PRISM' "$("$kinmat" "$w/deck" | grep '[*][*][*]')"
+# proof: whether the first assembly of a listing is PROVED or NOT PROVED
+proof() { sed -n 's/^ ASSEMBLY 1 .*DETERMINANTS [-+]*  *\([A-Z ]*PROVED\).*/\1/p'; }
 # near_zero Y: bars of 1 and 1 with feet 2 - 1E-12 apart hold B at h = 1E-6, which 4 roundings of the numbers move by 1E-8. A rod
 # follows B, and its cylinder has the length h - Y.
 near_zero() {
@@ -189,7 +191,7 @@ for case in '0.5E-6:PROVED 1' '0.99E-6:NOT PROVED 1' '1.01E-6:NOT PROVED 1' '1.5
    near_zero "${case%%:*}" > "$w/deck"
    "$kinmat" "$w/deck" > "$w/out" 2>&1
    equal "a proved ball and the length 0: ${case%%:*}" "${case#*:}" \
-      "$(sed -n 's/^ ASSEMBLY 1 .*DETERMINANTS [-+]*  *\([A-Z ]*PROVED\).*/\1/p' "$w/out") $(sed -n 's/^ --- ASSEMBLIES WITH A CYLINDER.*: //p' "$w/out")"
+      "$(proof < "$w/out") $(sed -n 's/^ --- ASSEMBLIES WITH A CYLINDER.*: //p' "$w/out")"
    equal "no stroke, no mark: ${case%%:*}" 0 "$(grep -c 'PROVED.*OUT OF STROKE' "$w/out")"
 done
 # The digits of a deck leave 1E-10 uncertain: so short a length may be 0, though its position is proved.
@@ -197,7 +199,7 @@ for case in '0.99999999995 NOT PROVED' '0.9999999995 PROVED'; do
    { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BARREL; card LINK ROD; card JOINT O BASE CRANK 0.0 0.0
       card JOINT B ROD CRANK 1.0 0.0; card JOINT C BASE BARREL "${case%% *}" 0.0; card CYLINDER C B RAM
       card DRIVE ANGLE BARREL '' 0.0 1.0; card AT '' '' '' 0.0; card ASSEMBLY; card END; } > "$w/deck"
-   equal "a length of 1 - ${case%% *}" "${case#* }" "$("$kinmat" "$w/deck" | sed -n 's/^ ASSEMBLY 1 .*DETERMINANTS [-+]*  *\([A-Z ]*PROVED\).*/\1/p')"
+   equal "a length of 1 - ${case%% *}" "${case#* }" "$("$kinmat" "$w/deck" | proof)"
 done
 through 2.0 "$(card DRIVE SLIDE CYL '' '' 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a drawing out of its stroke' 1 "$("$kinmat" --check "$w/deck" 2>&1 | grep -c 'IS DRAWN OUT OF STROKE')"
